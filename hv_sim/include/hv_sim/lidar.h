@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hv_core/scan.h"
+#include "hv_core/se3.h"
+#include "hv_sim/world.h"
+
+namespace hv::sim {
+
+/// Geometry and timing of a spinning LiDAR.
+struct LidarModel {
+  std::string name;
+  std::vector<double> elevation;       ///< per channel [rad]
+  std::vector<double> azimuth_offset;  ///< per channel [rad]
+  std::vector<double> firing_delay;    ///< per channel within its column [s]
+  int columns = 2000;                  ///< per revolution
+  double column_period = 50e-6;        ///< [s]
+  double range_sigma = 0.01;           ///< [m]
+  double min_range = 0.05;             ///< [m]
+  double max_range = 120.0;            ///< [m], at full reflectivity
+  double beam_divergence = 3e-3;       ///< full angle [rad]
+  bool clockwise = true;               ///< seen from above
+  double start_azimuth = 0.0;          ///< of column 0 [rad]
+
+  double period() const { return columns * column_period; }
+};
+
+LidarModel PandarXt32();
+LidarModel Hdl32e();
+
+struct LidarOptions {
+  bool noise = true;         ///< range noise and mixed pixels
+  bool people = true;        ///< moving people are seen
+  double dropout = 0.0;      ///< probability that a return is lost
+  double azimuth_keep = 1.0; ///< share of columns fired, for speed; 1 fires all
+};
+
+/// Casts every ray from the exact pose of its own firing time. Const methods are thread-safe; the
+/// result depends only on arguments and seed, not on the number of threads.
+class LidarSimulator {
+ public:
+  LidarSimulator(const World& world, LidarModel model, LidarOptions options, std::uint32_t seed);
+  ~LidarSimulator();
+
+  /// One revolution whose first firing is at `start_s` [s]; points in firing order, times from
+  /// `start_s`. `T_world_lidar(t)` is the LiDAR pose at time t [s]. Scan::stamp is
+  /// Time::FromSeconds(start_s).
+  Scan Sweep(double start_s, const std::function<Pose(double)>& T_world_lidar) const;
+
+  /// Distance from `point` to the nearest static surface, at most `limit` [m].
+  double DistanceToSurface(const Eigen::Vector3d& point, double limit) const;
+
+  const LidarModel& model() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hv::sim
