@@ -11,6 +11,13 @@ namespace {
 /// Below this angle the series of each coefficient is exact to double precision.
 constexpr double kSmallAngle = 1e-4;
 
+/// (1 - cos(angle)) / angle^2 without cancellation.
+double OneMinusCosine(double angle) {
+  if (angle < kSmallAngle) return 0.5 - angle * angle / 24.0;
+  const double half_sine = std::sin(0.5 * angle) / angle;
+  return 2.0 * half_sine * half_sine;
+}
+
 }  // namespace
 
 Eigen::Matrix3d Hat(const Eigen::Vector3d& v) {
@@ -24,7 +31,7 @@ Eigen::Matrix3d Exp(const Eigen::Vector3d& theta) {
   const double angle = std::sqrt(squared);
   const bool small = angle < kSmallAngle;
   const double a = small ? 1.0 - squared / 6.0 : std::sin(angle) / angle;
-  const double b = small ? 0.5 - squared / 24.0 : (1.0 - std::cos(angle)) / squared;
+  const double b = OneMinusCosine(angle);
   const Eigen::Matrix3d hat = Hat(theta);
   return Eigen::Matrix3d::Identity() + a * hat + b * hat * hat;
 }
@@ -42,7 +49,7 @@ Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& theta) {
   const double squared = theta.squaredNorm();
   const double angle = std::sqrt(squared);
   const bool small = angle < kSmallAngle;
-  const double a = small ? 0.5 - squared / 24.0 : (1.0 - std::cos(angle)) / squared;
+  const double a = OneMinusCosine(angle);
   const double b =
       small ? 1.0 / 6.0 - squared / 120.0 : (angle - std::sin(angle)) / (squared * angle);
   const Eigen::Matrix3d hat = Hat(theta);

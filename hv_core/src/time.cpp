@@ -55,6 +55,7 @@ std::optional<Time> ParseTime(const std::string& text) {
   }
   if (digits == 0 || whole > static_cast<std::int64_t>(kMaxSeconds)) return std::nullopt;
   if (at < text.size()) {
+    if (text[at] != 'e' && text[at] != 'E') return std::nullopt;
     char* end = nullptr;
     const double seconds = std::strtod(text.c_str(), &end);
     const bool usable = end == text.c_str() + text.size() && std::abs(seconds) <= kMaxSeconds;

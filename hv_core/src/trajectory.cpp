@@ -88,6 +88,7 @@ Trajectory ReadTum(const std::string& path) {
     }
     poses.push_back(*pose);
   }
+  if (file.bad()) throw InputError(path + ": cannot be read");
   return Trajectory(std::move(poses));
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -51,14 +52,17 @@ struct PointCloudDecoderConfig {
 
 /// What was recognised about the time of each point, decided on the first clouds and then kept.
 struct PointTimeLayout {
-  std::string field;          ///< empty: no time field, azimuth is used
-  double unit_s = 1.0;        ///< seconds per count
-  bool absolute = false;      ///< value is a time since the epoch, not since the scan start
-  bool stamp_at_end = false;  ///< header stamp is that of the last point
-  bool from_azimuth = false;  ///< times were rebuilt from azimuth and scan_period_s
-  bool deskewed = false;      ///< all points are taken at the header stamp (scan_period_s = 0)
+  std::string field;            ///< empty: no time field is used
+  double unit_s = 1.0;          ///< seconds per count
+  bool absolute = false;        ///< value is a time since the epoch, not near the header stamp
+  bool negative = false;        ///< relative times count up to 0 at the end of the sweep
+  bool stamp_at_end = false;    ///< header stamp is that of the last point
+  bool other_clock = false;     ///< absolute, but of another clock than the header: header is used
+  double clock_offset_s = 0.0;  ///< header minus first point, for absolute times [s]
+  bool from_azimuth = false;    ///< times are rebuilt from azimuth and scan_period_s
+  bool deskewed = false;        ///< all points are taken at the header stamp (scan_period_s = 0)
 
-  /// One line for the log: "point time: field 'timestamp' (float64, absolute seconds), ...".
+  /// One line for the log: "point time: field 'timestamp', absolute seconds, ...".
   std::string ToString() const;
 };
 
@@ -75,12 +79,17 @@ struct DecodedScan {
 
 /// Turns packed clouds of any common driver (Hesai, Velodyne, Ouster, Livox-style, RoboSense) into
 /// scans. Finds the per-point time among `t`, `time`, `timestamp`, `offset_time`, `time_stamp`
-/// and its unit from the span it covers. Total on any input: never throws after construction. Not
-/// thread-safe.
+/// and its unit from the span it covers. Points keep the order of the cloud. `point_stride` = n
+/// keeps every n-th return of each ring, staggered from ring to ring; in clouds without a ring
+/// field it keeps a share of 1/n by a pattern that resonates with no number of channels. Total on
+/// any input: never throws after construction. Not thread-safe.
 class PointCloudDecoder {
  public:
   /// Throws InputError when the configuration is invalid.
   explicit PointCloudDecoder(const PointCloudDecoderConfig& config);
+  ~PointCloudDecoder();
+  PointCloudDecoder(PointCloudDecoder&&) noexcept;
+  PointCloudDecoder& operator=(PointCloudDecoder&&) noexcept;
 
   DecodedScan Decode(const PointCloudView& cloud);
 
@@ -88,8 +97,15 @@ class PointCloudDecoder {
   const std::optional<PointTimeLayout>& time_layout() const { return layout_; }
 
  private:
+  struct Workspace;
+
+  void DecideTimeLayout(const PointCloudView& cloud);
+  void AssignTimes(const PointCloudView& cloud, DecodedScan& result);
+
   PointCloudDecoderConfig config_;
   std::optional<PointTimeLayout> layout_;
+  int unjudged_clouds_ = 0;
+  std::unique_ptr<Workspace> workspace_;
 };
 
 /// View of a sensor_msgs::PointCloud2 (any type with its members), which must outlive the view.
