@@ -204,6 +204,10 @@ void PointCloudDecoder::Workspace::SelectByRange(const PointCloudView& cloud,
                                                  DecodedScan& result) {
   const T min_squared = static_cast<T>(config.min_range_m * config.min_range_m);
   const T max_squared = static_cast<T>(config.max_range_m * config.max_range_m);
+  std::vector<Point>& points = result.scan.points;
+  points.resize(result.points_in);
+  kept.resize(result.points_in);
+  std::size_t count = 0;
   for (std::uint32_t row = 0; row < cloud.height; ++row) {
     const std::uint8_t* bytes = cloud.data + std::size_t{row} * cloud.row_step;
     for (std::uint32_t column = 0; column < cloud.width; ++column, bytes += cloud.point_step) {
@@ -212,9 +216,11 @@ void PointCloudDecoder::Workspace::SelectByRange(const PointCloudView& cloud,
       const T z = Load<T>(bytes + xyz.z->offset);
       const T squared = x * x + y * y + z * z;
       if (squared >= min_squared && squared <= max_squared) {
-        kept.push_back(bytes);
-        result.scan.points.push_back(
-            {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), 0.0F, 0.0F, 0});
+        kept[count] = bytes;
+        Point& point = points[count++];
+        point.x = static_cast<float>(x);
+        point.y = static_cast<float>(y);
+        point.z = static_cast<float>(z);
       } else if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z)) {
         ++result.out_of_range;
       } else {
@@ -222,6 +228,8 @@ void PointCloudDecoder::Workspace::SelectByRange(const PointCloudView& cloud,
       }
     }
   }
+  points.resize(count);
+  kept.resize(count);
 }
 
 void PointCloudDecoder::Workspace::ReadRings(const PointCloudView& cloud,
@@ -316,8 +324,6 @@ DecodedScan PointCloudDecoder::Decode(const PointCloudView& cloud) {
   if (!result.error.empty()) return result;
 
   std::vector<Point>& points = result.scan.points;
-  workspace_->kept.clear();
-  points.reserve(result.points_in);
   if (xyz.x->type == FieldType::kFloat32) {
     workspace_->SelectByRange<float>(cloud, xyz, config_, result);
   } else {
@@ -371,12 +377,15 @@ void PointCloudDecoder::AssignTimes(const PointCloudView& cloud, DecodedScan& re
   }
   scan.stamp = resolved.zero;
   std::size_t count = 0;
+  float last = 0.0F;
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     if (resolved.usable[i] == 0) continue;
-    scan.points[i].time = static_cast<float>(resolved.seconds[i]);
-    scan.duration = std::max(scan.duration, resolved.seconds[i]);
-    scan.points[count++] = scan.points[i];
+    const float seconds = static_cast<float>(resolved.seconds[i]);
+    last = std::max(last, seconds);
+    if (count != i) scan.points[count] = scan.points[i];
+    scan.points[count++].time = seconds;
   }
+  scan.duration = static_cast<double>(last);
   result.bad_time = scan.points.size() - count;
   scan.points.resize(count);
 }
