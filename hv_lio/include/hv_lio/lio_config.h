@@ -5,6 +5,7 @@
 
 #include "hv_core/config.h"
 #include "hv_core/se3.h"
+#include "hv_lio/constant_velocity.h"
 #include "hv_lio/initializer.h"
 #include "hv_lio/imu_propagation.h"
 #include "hv_lio/scan_preprocessor.h"
@@ -44,6 +45,7 @@ struct LioConfig {
   ExtrinsicConfig extrinsic;
   ImuNoiseConfig imu;
   InitializerConfig initialization;
+  ConstantVelocityConfig constant_velocity;
   PreprocessConfig preprocess;
   VoxelMapConfig map;
   UpdateConfig update;

@@ -2,20 +2,20 @@
 
 #include <cstddef>
 #include <deque>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "hv_core/imu_sample.h"
 #include "hv_core/scan.h"
+#include "hv_lio/constant_velocity.h"
+#include "hv_lio/imu_buffer.h"
+#include "hv_lio/initializer.h"
 #include "hv_lio/lio_config.h"
 #include "hv_lio/odometry_result.h"
-#include "hv_lio/voxel_map.h"
+#include "hv_lio/odometry.h"
 
 namespace hv::lio {
-
-class Odometry;
 
 /// Counts of everything unusual since construction, for diagnostics and summaries.
 struct PipelineCounters {
@@ -40,7 +40,6 @@ class Pipeline {
  public:
   /// Throws InputError when the configuration is invalid.
   explicit Pipeline(const LioConfig& config);
-  ~Pipeline();
 
   /// Hands in one IMU sample (acceleration in m/s^2 or g; recognised at the start). Never throws.
   /// Returns the prediction at its stamp once odometry runs (IMU-rate output), else nullopt.
@@ -69,17 +68,32 @@ class Pipeline {
   const VoxelMap& map() const;
 
  private:
-  void OnClockJump(double seconds, const char* source);
-  ScanResult Process(Scan scan, double decode_ms);
-
-  LioConfig config_;
-  std::unique_ptr<Odometry> odometry_;
   struct WaitingScan {
     Scan scan;
     double decode_ms = 0.0;
   };
+
+  bool CoveredByImu(const Scan& scan) const;
+  ScanResult ProcessOldest();
+  ScanResult Track(const Scan& scan);
+  bool TryStart(const Scan& scan, ScanResult& result);
+  std::vector<ImuStep> StepsTo(const Scan& scan);
+  void FollowClock(Time stamp, const char* source);
+  void Supervise(ScanResult& result);
+  void RestartPrediction(const OdometryEstimate& estimate);
+  std::optional<OdometryEstimate> Predict(const ImuSample& sample);
+  void Note(std::string event);
+
+  LioConfig config_;
+  Odometry odometry_;
+  Initializer initializer_;
+  ConstantVelocityModel constant_velocity_;
+  ImuBuffer imu_;
   std::deque<WaitingScan> scans_;
-  std::deque<ImuSample> imu_;
+  std::optional<ImuSample> predicted_to_;
+  NavState predicted_;
+  OdometryEstimate predicted_from_;
+  int imu_only_streak_ = 0;
   PipelineCounters counters_;
   std::vector<std::string> events_;
 };

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <vector>
+
+#include "hv_core/config.h"
+#include "hv_core/imu_sample.h"
+#include "hv_lio/nav_state.h"
+
+namespace hv::lio {
+
+/// Noise of the IMU as the filter assumes it, and where the sensor saturates.
+struct ImuNoiseConfig {
+  double gyro_noise = 1e-3;     // rad/s/sqrt(Hz)
+  double accel_noise = 1e-2;    // m/s^2/sqrt(Hz)
+  double gyro_walk = 1e-5;      // rad/s^2/sqrt(Hz)
+  double accel_walk = 1e-4;     // m/s^3/sqrt(Hz)
+  double gyro_limit = 35.0;     // rad/s
+  double accel_limit = 157.0;   // m/s^2
+  double degraded_factor = 30.0;
+
+  void Describe(ConfigVisitor& visitor);
+  void Validate(ConfigProblems& problems) const;
+};
+
+/// Motion over one IMU interval: constant angular velocity and constant acceleration in odom.
+struct MotionKnot {
+  double time = 0.0;  ///< start of the interval, relative to the reference given to Propagate [s]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();          ///< odom [m]
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();      ///< R_odom_imu
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< odom [m/s]
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();      ///< odom [m/s^2]
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< imu [rad/s]
+
+  /// Pose `dt` seconds after `time`.
+  Pose PoseAfter(double dt) const;
+};
+
+/// One step of the process model with a constant reading over `dt` seconds.
+struct ImuStep {
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< measured [rad/s]
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();      ///< measured [m/s^2]
+  double dt = 0.0;                                             ///< [s]
+  bool degraded = false;  ///< saturated or bridging a gap: noise times degraded_factor
+};
+
+/// Mean part of the step (methods section 1, propagation; midpoint attitude for the specific
+/// force). Returns the interval's motion, for deskewing.
+MotionKnot PropagateState(const ImuStep& step, NavState& state);
+
+/// F = d x_{k+1} / d x_k of PropagateState at `state`, in error coordinates.
+ErrorMatrix PropagationJacobian(const ImuStep& step, const NavState& state);
+
+/// P <- F P F^T + Q dt.
+void PropagateCovariance(const ImuStep& step, const NavState& state, const ImuNoiseConfig& noise,
+                         ErrorMatrix& covariance);
+
+}  // namespace hv::lio

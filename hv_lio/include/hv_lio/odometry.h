@@ -1,0 +1,70 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tbb/task_arena.h>
+
+#include "hv_core/imu_sample.h"
+#include "hv_core/scan.h"
+#include "hv_lio/lio_config.h"
+#include "hv_lio/odometry_result.h"
+
+namespace hv::lio {
+
+/// The filter and its map: from one scan with the IMU samples that cover it to a pose. Input is
+/// expected in order and free of gaps (see Pipeline). Not thread-safe.
+class Odometry {
+ public:
+  explicit Odometry(const LioConfig& config);
+
+  bool initialized() const { return initialized_; }
+  /// Instant of the state: end of the last scan, or the last propagated sample.
+  Time stamp() const { return stamp_; }
+
+  /// Starts at `stamp` from an initial state. With a current pose kept by Restart, the pose goes on
+  /// from there.
+  void Start(Time stamp, const InitialState& initial);
+
+  /// Propagates to the end of the scan with `steps` (their durations add up from the current stamp
+  /// to the scan end), deskews, updates, extends the map.
+  ScanResult Process(const Scan& scan, const std::vector<ImuStep>& steps);
+
+  /// Propagates state and covariance without a scan.
+  void Propagate(const std::vector<ImuStep>& steps);
+
+  /// Moves the clock without moving the state, after a jump of the sensor clock.
+  void MoveClock(Time stamp) { stamp_ = stamp; }
+
+  /// Forgets the map and the motion. `keep_pose`: the next Start goes on from the current pose.
+  void Reset(bool keep_pose);
+
+  /// Current state with its covariances; `angular_velocity` without bias, IMU frame [rad/s].
+  OdometryEstimate Estimate(const Eigen::Vector3d& angular_velocity) const;
+
+  const NavState& state() const { return state_; }
+  const ErrorMatrix& covariance() const { return covariance_; }
+  double accel_scale() const { return accel_scale_; }
+  const VoxelMap& map() const { return map_; }
+
+ private:
+  std::vector<MotionKnot> PropagateKnots(const std::vector<ImuStep>& steps, double start_time);
+  void UpdateAndInsert(const std::vector<SurfaceCell>& cells, ScanResult& result);
+
+  LioConfig config_;
+  Pose T_imu_lidar_;
+  CellGrid grid_;
+  ScanUpdate update_;
+  VoxelMap map_;
+  tbb::task_arena arena_;
+  NavState state_;
+  ErrorMatrix covariance_ = ErrorMatrix::Identity();
+  std::optional<Pose> kept_pose_;
+  Time stamp_;
+  double accel_scale_ = 1.0;
+  bool initialized_ = false;
+};
+
+}  // namespace hv::lio

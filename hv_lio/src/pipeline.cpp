@@ -1,0 +1,252 @@
+#include "hv_lio/pipeline.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "hv_core/so3.h"
+
+namespace hv::lio {
+namespace {
+
+LioConfig Checked(const LioConfig& config) {
+  ConfigProblems problems;
+  config.Validate(problems);
+  if (!problems.lines().empty()) throw InputError("configuration: " + problems.lines().front());
+  LioConfig effective = config;
+  if (!config.use_imu) {
+    effective.imu = ConstantVelocityModel(config.constant_velocity).Noise();
+  }
+  return effective;
+}
+
+std::string Line(const char* format, double value, const char* text) {
+  char line[200];
+  std::snprintf(line, sizeof(line), format, value, text);
+  return line;
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const LioConfig& config)
+    : config_(Checked(config)),
+      odometry_(config_),
+      initializer_(config_.initialization),
+      constant_velocity_(config_.constant_velocity),
+      imu_(config_.imu, config_.robustness.imu_gap_s) {}
+
+const VoxelMap& Pipeline::map() const { return odometry_.map(); }
+
+void Pipeline::Note(std::string event) { events_.push_back(std::move(event)); }
+
+std::vector<std::string> Pipeline::TakeEvents() { return std::exchange(events_, {}); }
+
+std::optional<OdometryEstimate> Pipeline::AddImu(const ImuSample& sample) {
+  ++counters_.imu_samples;
+  if (!sample.acceleration.allFinite() || !sample.angular_velocity.allFinite()) {
+    ++counters_.imu_invalid;
+    return std::nullopt;
+  }
+  const std::optional<Time> newest = imu_.newest();
+  if (newest && sample.stamp <= *newest) {
+    if (*newest - sample.stamp > config_.robustness.clock_jump_s) {
+      FollowClock(sample.stamp, "IMU");
+    } else {
+      ++counters_.imu_out_of_order;
+    }
+  }
+  if (newest && sample.stamp - *newest > config_.robustness.imu_gap_s) {
+    ++counters_.imu_gaps;
+    Note(Line("IMU silent for %.3f s%s", sample.stamp - *newest, ""));
+  }
+  if (!imu_.Add(sample)) return std::nullopt;
+  if (sample.angular_velocity.cwiseAbs().maxCoeff() >= config_.imu.gyro_limit ||
+      sample.acceleration.cwiseAbs().maxCoeff() * odometry_.accel_scale() >=
+          config_.imu.accel_limit) {
+    ++counters_.imu_saturated;
+  }
+  return Predict(sample);
+}
+
+void Pipeline::AddScan(Scan scan, double decode_ms) {
+  ++counters_.scans;
+  scan.stamp = scan.stamp + config_.lidar_time_offset_s;
+  scans_.push_back({std::move(scan), decode_ms});
+}
+
+bool Pipeline::CoveredByImu(const Scan& scan) const {
+  return !config_.use_imu || (imu_.newest() && *imu_.newest() >= scan.end());
+}
+
+std::optional<ScanResult> Pipeline::ProcessNext() {
+  if (scans_.empty()) return std::nullopt;
+  const bool overdue =
+      scans_.size() > static_cast<std::size_t>(config_.robustness.max_waiting_scans);
+  if (!CoveredByImu(scans_.front().scan) && !overdue) return std::nullopt;
+  return ProcessOldest();
+}
+
+std::optional<ScanResult> Pipeline::Flush() {
+  return scans_.empty() ? std::nullopt : std::optional<ScanResult>(ProcessOldest());
+}
+
+ScanResult Pipeline::ProcessOldest() {
+  const WaitingScan waiting = std::move(scans_.front());
+  scans_.pop_front();
+  const Scan& scan = waiting.scan;
+  ScanResult result;
+  result.scan_start = scan.stamp;
+  result.estimate.stamp = scan.end();
+  const bool started = odometry_.initialized() || TryStart(scan, result);
+  if (started) result = Track(scan);
+  result.timing.preprocess_ms += waiting.decode_ms;
+  if (result.status == ScanStatus::kDropped) ++counters_.scans_dropped;
+  if (result.status == ScanStatus::kImuOnly) ++counters_.scans_imu_only;
+  if (result.status == ScanStatus::kTracking) ++counters_.scans_tracked;
+  return result;
+}
+
+bool Pipeline::TryStart(const Scan& scan, ScanResult& result) {
+  result.status = ScanStatus::kInitializing;
+  if (scan.points.empty()) {
+    result.reason = "waiting for a scan with points";
+    return false;
+  }
+  if (!config_.use_imu) {
+    odometry_.Start(scan.stamp, constant_velocity_.Start());
+    return true;
+  }
+  for (const ImuSample& sample : imu_.samples()) {
+    if (sample.stamp <= scan.end()) initializer_.Add(sample);
+  }
+  imu_.DropBefore(scan.end());
+  const std::optional<InitialState> initial = initializer_.TryInitialize();
+  if (!initial) {
+    result.reason = initializer_.WaitingFor();
+    return false;
+  }
+  odometry_.Start(scan.end(), *initial);
+  initializer_.Clear();
+  if (initial->accel_scale != 1.0) Note("accelerometer reads g, not m/s^2: converted");
+  Note(initial->moving ? "started in motion: tilt and velocity settle within seconds"
+                       : "started at rest");
+  return true;
+}
+
+std::vector<ImuStep> Pipeline::StepsTo(const Scan& scan) {
+  const Time from = odometry_.stamp();
+  if (!config_.use_imu) {
+    return constant_velocity_.Steps(odometry_.state(), scan.end() - from);
+  }
+  return imu_.Steps(from, scan.end(), odometry_.accel_scale());
+}
+
+ScanResult Pipeline::Track(const Scan& scan) {
+  const double lag = odometry_.stamp() - scan.end();
+  if (lag > config_.robustness.clock_jump_s) FollowClock(scan.stamp, "LiDAR");
+  const bool silent = imu_.LongestGap(odometry_.stamp(), scan.end()) >
+                      config_.robustness.clock_jump_s;
+  if (scan.stamp - odometry_.stamp() > config_.robustness.clock_jump_s && silent) {
+    FollowClock(scan.stamp, "sensor");
+  }
+  if (scan.end() < odometry_.stamp()) {
+    ScanResult result;
+    result.status = ScanStatus::kDropped;
+    result.scan_start = scan.stamp;
+    result.estimate.stamp = scan.end();
+    result.reason = "scan is older than the one before";
+    return result;
+  }
+  ScanResult result = odometry_.Process(scan, StepsTo(scan));
+  imu_.DropBefore(scan.end());
+  constant_velocity_.Observe(scan.end(), result.estimate.T_odom_imu.linear());
+  Supervise(result);
+  RestartPrediction(result.estimate);
+  return result;
+}
+
+void Pipeline::FollowClock(Time stamp, const char* source) {
+  ++counters_.clock_jumps;
+  Note(Line("clock of the %2$s jumped by %1$.3f s", stamp - odometry_.stamp(), source));
+  const auto belongs = [&](const WaitingScan& waiting) {
+    const double distance = waiting.scan.stamp - stamp;
+    return distance > -1.0 && distance < config_.robustness.clock_jump_s;
+  };
+  const auto foreign =
+      std::remove_if(scans_.begin(), scans_.end(),
+                     [&](const WaitingScan& waiting) { return !belongs(waiting); });
+  counters_.scans_dropped += static_cast<std::size_t>(scans_.end() - foreign);
+  scans_.erase(foreign, scans_.end());
+  if (imu_.newest() && *imu_.newest() > stamp + config_.robustness.clock_jump_s) imu_.Clear();
+  initializer_.Clear();
+  constant_velocity_.Clear();
+  predicted_to_.reset();
+  if (config_.robustness.on_clock_jump == "reset") {
+    Reset(true);
+  } else {
+    odometry_.MoveClock(stamp);
+  }
+}
+
+void Pipeline::Supervise(ScanResult& result) {
+  imu_only_streak_ = result.status == ScanStatus::kImuOnly ? imu_only_streak_ + 1 : 0;
+  const double speed = result.estimate.velocity_odom.norm();
+  if (!(speed < config_.robustness.max_speed_mps)) {
+    result.reason = Line("diverged: speed %.1f m/s%s", speed, ", started anew");
+  } else if (imu_only_streak_ >= config_.robustness.max_imu_only_scans) {
+    result.reason = Line("no match with the map for %.0f scans%s", imu_only_streak_,
+                         ", started anew");
+  } else {
+    return;
+  }
+  result.status = ScanStatus::kImuOnly;
+  Note(result.reason);
+  Reset(true);
+}
+
+void Pipeline::Reset(bool keep_pose) {
+  ++counters_.resets;
+  odometry_.Reset(keep_pose);
+  initializer_.Clear();
+  constant_velocity_.Clear();
+  predicted_to_.reset();
+  imu_only_streak_ = 0;
+}
+
+void Pipeline::RestartPrediction(const OdometryEstimate& estimate) {
+  if (!odometry_.initialized() || !config_.use_imu) return;
+  predicted_ = odometry_.state();
+  predicted_from_ = estimate;
+  predicted_to_.reset();
+  for (const ImuSample& sample : imu_.samples()) Predict(sample);
+}
+
+std::optional<OdometryEstimate> Pipeline::Predict(const ImuSample& sample) {
+  if (!odometry_.initialized() || !config_.use_imu) return std::nullopt;
+  const Time from = predicted_to_ ? predicted_to_->stamp : odometry_.stamp();
+  if (sample.stamp <= from) {
+    if (!predicted_to_) predicted_to_ = sample;
+    return std::nullopt;
+  }
+  ImuStep step;
+  const ImuSample& before = predicted_to_ ? *predicted_to_ : sample;
+  step.angular_velocity = 0.5 * (before.angular_velocity + sample.angular_velocity);
+  step.acceleration = 0.5 * odometry_.accel_scale() * (before.acceleration + sample.acceleration);
+  step.dt = sample.stamp - std::max(from, odometry_.stamp());
+  PropagateState(step, predicted_);
+  predicted_to_ = sample;
+
+  OdometryEstimate estimate = predicted_from_;
+  const double ahead = sample.stamp - predicted_from_.stamp;
+  estimate.stamp = sample.stamp;
+  estimate.T_odom_imu = predicted_.T_odom_imu();
+  estimate.velocity_odom = predicted_.velocity;
+  estimate.angular_velocity_imu = sample.angular_velocity - predicted_.gyro_bias;
+  estimate.pose_covariance.topLeftCorner<3, 3>() +=
+      ahead * ahead * predicted_from_.twist_covariance.topLeftCorner<3, 3>();
+  estimate.pose_covariance.bottomRightCorner<3, 3>().diagonal().array() +=
+      config_.imu.gyro_noise * config_.imu.gyro_noise * ahead;
+  return estimate;
+}
+
+}  // namespace hv::lio

@@ -1,0 +1,201 @@
+#include "hv_lio/scan_update.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "hv_lio/residual.h"
+
+namespace hv::lio {
+namespace {
+
+constexpr std::size_t kCellsPerTask = 256;
+
+}  // namespace
+
+void UpdateConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Field("max_iterations", max_iterations, "most iterations of an update");
+  visitor.Field("convergence", convergence, "step below which an update has converged [m, rad]");
+  visitor.Field("gate_sigmas", gate_sigmas, "residuals beyond this many sigmas are refused");
+  visitor.Field("huber_sigmas", huber_sigmas, "residuals beyond this many sigmas weigh less");
+  visitor.Field("model_sigma_m", model_sigma_m,
+                "what surfaces deviate from planes and Gaussians [m]");
+  visitor.Field("gaussian_weight", gaussian_weight,
+                "weight of residuals against Gaussians relative to planes");
+  visitor.Field("gaussian_sigma_m", gaussian_sigma_m,
+                "directions in which a Gaussian is wider than this constrain nothing [m]");
+  visitor.Field("information_scale", information_scale,
+                "share of the residuals that count as independent");
+  visitor.Field("min_residuals", min_residuals, "fewest residuals for an update");
+  visitor.Field("degenerate_ratio", degenerate_ratio,
+                "share of the residuals' constraint below which a direction is degenerate");
+}
+
+void UpdateConfig::Validate(ConfigProblems& problems) const {
+  problems.Require(max_iterations >= 1, "update.max_iterations", "must be at least 1");
+  problems.Require(convergence > 0.0, "update.convergence", "must be positive");
+  problems.Require(gate_sigmas > 0.0, "update.gate_sigmas", "must be positive");
+  problems.Require(huber_sigmas > 0.0, "update.huber_sigmas", "must be positive");
+  problems.Require(model_sigma_m >= 0.0, "update.model_sigma_m", "must not be negative");
+  problems.Require(gaussian_weight >= 0.0 && gaussian_weight <= 1.0, "update.gaussian_weight",
+                   "must lie between 0 and 1");
+  problems.Require(gaussian_sigma_m > 0.0, "update.gaussian_sigma_m", "must be positive");
+  problems.Require(information_scale > 0.0 && information_scale <= 1.0,
+                   "update.information_scale", "must be positive and at most 1");
+  problems.Require(min_residuals >= 6, "update.min_residuals", "must be at least 6");
+  problems.Require(degenerate_ratio >= 0.0 && degenerate_ratio < 1.0, "update.degenerate_ratio",
+                   "must lie between 0 and 1");
+}
+
+/// Normal equations of the pose and what goes with them.
+struct ScanUpdate::Normal {
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  std::size_t count = 0;
+  std::size_t planar = 0;
+  double abs_residual = 0.0;
+  /// Directions of the residuals, equally weighted, for degeneracy: translation and rotation part.
+  Eigen::Matrix3d translation_directions = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d rotation_directions = Eigen::Matrix3d::Zero();
+
+  void Add(const Residual& residual, double weight) {
+    const Vector6d scaled = weight * residual.jacobian;
+    information.noalias() += scaled * residual.jacobian.transpose();
+    gradient += residual.value * scaled;
+    abs_residual += std::abs(residual.value);
+    ++count;
+    const Eigen::Vector3d direction = residual.jacobian.head<3>();
+    translation_directions.noalias() += direction * direction.transpose();
+    const double arm = residual.jacobian.tail<3>().norm();
+    if (arm > 1e-9) {
+      const Eigen::Vector3d turn = residual.jacobian.tail<3>() / std::max(arm, 1.0);
+      rotation_directions.noalias() += turn * turn.transpose();
+    }
+  }
+
+  void Add(const Normal& other) {
+    information += other.information;
+    gradient += other.gradient;
+    count += other.count;
+    planar += other.planar;
+    abs_residual += other.abs_residual;
+    translation_directions += other.translation_directions;
+    rotation_directions += other.rotation_directions;
+  }
+};
+
+void ScanUpdate::AddCell(const SurfaceCell& cell, const SurfaceFeature& feature,
+                         const Pose& T_odom_imu, const Matrix6d& pose_covariance,
+                         Normal& normal) const {
+  const double model_variance = config_.model_sigma_m * config_.model_sigma_m;
+  const auto weigh = [&](Residual& residual, double factor) {
+    residual.variance += model_variance;
+    const double predicted =
+        residual.variance + residual.jacobian.dot(pose_covariance * residual.jacobian);
+    const double squared = residual.value * residual.value;
+    if (squared > config_.gate_sigmas * config_.gate_sigmas * predicted) return false;
+    const double sigmas = std::sqrt(squared / residual.variance);
+    const double robust = std::min(1.0, config_.huber_sigmas / std::max(sigmas, 1e-12));
+    normal.Add(residual, factor * robust / residual.variance);
+    return true;
+  };
+  if (feature.kind == SurfaceFeature::Kind::kPlane) {
+    Residual residual = PlaneResidual(cell, feature, T_odom_imu);
+    if (weigh(residual, config_.information_scale)) ++normal.planar;
+    return;
+  }
+  if (config_.gaussian_weight == 0.0) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (feature.variance[axis] > config_.gaussian_sigma_m * config_.gaussian_sigma_m) continue;
+    Residual residual = GaussianResidual(cell, feature, axis, T_odom_imu);
+    weigh(residual, config_.information_scale * config_.gaussian_weight);
+  }
+}
+
+ScanUpdate::Normal ScanUpdate::Accumulate(const std::vector<SurfaceCell>& cells,
+                                          const VoxelMap& map, const Pose& T_odom_imu,
+                                          const Matrix6d& pose_covariance) const {
+  const std::size_t tasks = (cells.size() + kCellsPerTask - 1) / kCellsPerTask;
+  std::vector<Normal> parts(tasks);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tasks, 1),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t task = range.begin(); task != range.end(); ++task) {
+                        const std::size_t end = std::min(cells.size(), (task + 1) * kCellsPerTask);
+                        for (std::size_t i = task * kCellsPerTask; i < end; ++i) {
+                          const SurfaceFeature* feature = map.Find(T_odom_imu * cells[i].mean);
+                          if (feature == nullptr) continue;
+                          AddCell(cells[i], *feature, T_odom_imu, pose_covariance, parts[task]);
+                        }
+                      }
+                    });
+  Normal total;
+  for (const Normal& part : parts) total.Add(part);
+  return total;
+}
+
+void ScanUpdate::FindDegenerate(const Normal& normal, UpdateSummary& summary) const {
+  const auto weak = [&](const Eigen::Matrix3d& directions) {
+    std::vector<Eigen::Vector3d> found;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(directions);
+    const double trace = std::max(directions.trace(), 1e-12);
+    for (int i = 0; i < 3; ++i) {
+      if (solver.eigenvalues()[i] < config_.degenerate_ratio * trace) {
+        found.emplace_back(solver.eigenvectors().col(i));
+      }
+    }
+    return found;
+  };
+  summary.degenerate_translation = weak(normal.translation_directions);
+  summary.degenerate_rotation = weak(normal.rotation_directions);
+}
+
+void ScanUpdate::RemoveDegenerate(const UpdateSummary& summary, Normal& normal) {
+  Matrix6d keep = Matrix6d::Identity();
+  for (const Eigen::Vector3d& direction : summary.degenerate_translation) {
+    keep.topLeftCorner<3, 3>() -= direction * direction.transpose();
+  }
+  for (const Eigen::Vector3d& direction : summary.degenerate_rotation) {
+    keep.bottomRightCorner<3, 3>() -= direction * direction.transpose();
+  }
+  normal.information = keep * normal.information * keep;
+  normal.gradient = keep * normal.gradient;
+}
+
+UpdateSummary ScanUpdate::Apply(const std::vector<SurfaceCell>& cells, const VoxelMap& map,
+                                NavState& state, ErrorMatrix& covariance) const {
+  UpdateSummary summary;
+  const NavState prior = state;
+  const ErrorMatrix prior_information = covariance.llt().solve(ErrorMatrix::Identity());
+  const Matrix6d pose_covariance = covariance.topLeftCorner<6, 6>();
+  NavState current = prior;
+  ErrorMatrix information;
+  while (summary.iterations < config_.max_iterations && !summary.converged) {
+    Normal normal = Accumulate(cells, map, current.T_odom_imu(), pose_covariance);
+    if (normal.count < static_cast<std::size_t>(config_.min_residuals)) return UpdateSummary();
+    FindDegenerate(normal, summary);
+    RemoveDegenerate(summary, normal);
+    const ErrorVector deviation = current.Minus(prior);
+    const ErrorMatrix to_prior = current.MinusJacobian(prior);
+    information = to_prior.transpose() * prior_information * to_prior;
+    ErrorVector gradient = to_prior.transpose() * (prior_information * deviation);
+    information.topLeftCorner<6, 6>() += normal.information;
+    gradient.head<6>() += normal.gradient;
+    const ErrorVector step = -information.ldlt().solve(gradient);
+    current = current.Plus(step);
+    ++summary.iterations;
+    summary.converged = step.head<6>().cwiseAbs().maxCoeff() < config_.convergence;
+    summary.residuals = normal.count;
+    summary.planar = normal.planar;
+    summary.mean_abs_residual_m = normal.abs_residual / static_cast<double>(normal.count);
+  }
+  state = current;
+  covariance = information.llt().solve(ErrorMatrix::Identity());
+  covariance = 0.5 * (covariance + covariance.transpose()).eval();
+  return summary;
+}
+
+}  // namespace hv::lio
