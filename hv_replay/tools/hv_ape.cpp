@@ -1,0 +1,51 @@
+#include <cstdio>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "hv_core/error.h"
+#include "hv_core/trajectory.h"
+#include "hv_replay/error_report.h"
+#include "hv_replay/trajectory_error.h"
+#include "tool.h"
+
+namespace {
+
+struct Arguments {
+  std::string reference;
+  std::string estimate;
+  std::string align = "se3";
+  bool json = false;
+  hv::replay::TrajectoryErrorOptions options;
+};
+
+void Declare(CLI::App& app, Arguments& arguments) {
+  app.add_option("--reference", arguments.reference, "true trajectory (TUM)")->required();
+  app.add_option("--estimate", arguments.estimate, "trajectory to judge (TUM)")->required();
+  app.add_option("--align", arguments.align, "se3, yaw or none")->capture_default_str();
+  app.add_option("--max-gap", arguments.options.max_gap_s,
+                 "longest gap to interpolate across [s]")->capture_default_str();
+  app.add_flag("--json", arguments.json, "print one JSON object");
+}
+
+int Compare(Arguments& arguments) {
+  arguments.options.alignment = hv::replay::ParseAlignment(arguments.align);
+  const hv::replay::TrajectoryError error =
+      hv::replay::CompareTrajectories(hv::ReadTum(arguments.reference),
+                                      hv::ReadTum(arguments.estimate), arguments.options);
+  const std::string text =
+      arguments.json
+          ? hv::replay::ErrorJson(error, arguments.options.alignment).ToString() + "\n"
+          : hv::replay::ErrorTable(error, arguments.options.alignment, hv::replay::ColourOutput());
+  std::fputs(text.c_str(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Absolute and relative pose error of a trajectory against a reference.", "hv_ape");
+  Arguments arguments;
+  Declare(app, arguments);
+  return hv::replay::RunTool(app, argc, argv, [&arguments] { return Compare(arguments); });
+}
