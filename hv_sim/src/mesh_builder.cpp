@@ -178,4 +178,8 @@ void MeshBuilder::Undulate(double amplitude, double wavelength, std::uint32_t se
   }
 }
 
+void MeshBuilder::LimitReflectivity(double limit) {
+  for (float& value : mesh_.reflectivity) value = std::min(value, static_cast<float>(limit));
+}
+
 }  // namespace hv::sim

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "hv_core/error.h"
+#include "hv_sim/floor_plan.h"
 #include "worlds/worlds.h"
 
 namespace hv::sim {
@@ -15,8 +16,13 @@ struct Entry {
   World (*make)(std::uint32_t seed);
 };
 
-constexpr std::array<Entry, 3> kWorlds = {
-    {{"office", MakeOffice}, {"corridor", MakeCorridor}, {"construction", MakeConstruction}}};
+constexpr std::array<Entry, 7> kWorlds = {{{"office", MakeOffice},
+                                           {"corridor", MakeCorridor},
+                                           {"construction", MakeConstruction},
+                                           {"warehouse", MakeWarehouse},
+                                           {"campus", MakeCampus},
+                                           {"tunnel", MakeTunnel},
+                                           {"tunnel_straight", MakeStraightTunnel}}};
 
 /// Levenshtein distance.
 std::size_t EditDistance(const std::string& a, const std::string& b) {
@@ -31,6 +37,14 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
     }
   }
   return row.back();
+}
+
+bool IsYamlPath(const std::string& name) {
+  const auto ends_with = [&name](const std::string& tail) {
+    return name.size() > tail.size() &&
+           name.compare(name.size() - tail.size(), tail.size(), tail) == 0;
+  };
+  return ends_with(".yaml") || ends_with(".yml");
 }
 
 [[noreturn]] void ThrowUnknown(const std::string& name) {
@@ -51,6 +65,7 @@ std::vector<std::string> WorldNames() {
 }
 
 World MakeWorld(const std::string& name, std::uint32_t seed) {
+  if (IsYamlPath(name)) return ExtrudeFloorPlan(ReadFloorPlan(name), seed);
   for (const Entry& entry : kWorlds) {
     if (name == entry.name) return entry.make(seed);
   }

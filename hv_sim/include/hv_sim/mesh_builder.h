@@ -64,6 +64,9 @@ class MeshBuilder {
   /// exactly flat.
   void Undulate(double amplitude, double wavelength, std::uint32_t seed);
 
+  /// Makes everything added so far at most this reflective.
+  void LimitReflectivity(double limit);
+
   const Mesh& mesh() const { return mesh_; }
 
  private:

@@ -98,7 +98,7 @@ void AddServices(MeshBuilder& mesh, const Vector3d& from, const Vector3d& to, Ra
     mesh.AddFrustum(at - 0.05 * along, at + 0.05 * along, 0.11, 0.11, 10);
     if (random.Chance(0.4)) {
       mesh.AddCable(at - 0.2 * side, at + random.Uniform(0.8, 2.0) * along - 0.25 * side,
-                    random.Uniform(0.05, 0.25), 0.012);
+                    random.Uniform(0.03, 0.12), 0.012);
     }
   }
 }

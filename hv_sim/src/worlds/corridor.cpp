@@ -115,7 +115,7 @@ void AddOverhead(Site& site) {
     for (double y = 2.0; y < kGap - 1.0; y += kModule) {
       mesh.AddBox(Upright({x, y, kHeight - 0.06}), Vector3d(1.2, 0.15, 0.08));
     }
-    AddServices(mesh, {x + 0.55, 1.0, 2.2}, {x + 0.55, kGap - 1.0, 2.2}, site.random);
+    AddServices(mesh, {x + 0.55, 1.0, 2.3}, {x + 0.55, kGap - 1.0, 2.3}, site.random);
   }
 }
 
