@@ -80,9 +80,9 @@ Style Aggressive() {
   style.roll_deg = -2.0;
   style.pitch_deg = 4.0;
   style.harmonics = {{kUp, 0.045, 2.1},     {kUp, 0.004, 5.7},    {kForward, 0.02, 2.1},
-                     {kLeft, 0.035, 1.05},  {kLeft, 0.003, 6.3},  {kRoll, 13.0, 0.72},
-                     {kRoll, 2.0, 4.1},     {kPitchUp, 12.0, 0.6}, {kPitchUp, 1.5, 4.9},
-                     {kTurn, 26.0, 0.43},   {kTurn, 5.0, 1.4}};
+                     {kLeft, 0.035, 1.05},  {kLeft, 0.003, 6.3},  {kRoll, 11.0, 0.72},
+                     {kRoll, 2.0, 4.1},     {kPitchUp, 10.0, 0.6}, {kPitchUp, 1.5, 4.9},
+                     {kTurn, 21.0, 0.43},   {kTurn, 5.0, 1.4}};
   return style;
 }
 
