@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -6,6 +7,7 @@
 #include "hv_core/error.h"
 #include "hv_core/trajectory.h"
 #include "hv_replay/error_report.h"
+#include "hv_replay/plot.h"
 #include "hv_replay/trajectory_error.h"
 #include "tool.h"
 
@@ -15,6 +17,7 @@ struct Arguments {
   std::string reference;
   std::string estimate;
   std::string align = "se3";
+  std::string plot;
   bool json = false;
   hv::replay::TrajectoryErrorOptions options;
 };
@@ -25,6 +28,7 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--align", arguments.align, "se3, yaw or none")->capture_default_str();
   app.add_option("--max-gap", arguments.options.max_gap_s,
                  "longest gap to interpolate across [s]")->capture_default_str();
+  app.add_option("--plot", arguments.plot, "draw paths and errors into this picture (.png)");
   app.add_flag("--json", arguments.json, "print one JSON object");
 }
 
@@ -33,6 +37,10 @@ int Compare(Arguments& arguments) {
   const hv::replay::TrajectoryError error =
       hv::replay::CompareTrajectories(hv::ReadTum(arguments.reference),
                                       hv::ReadTum(arguments.estimate), arguments.options);
+  if (!arguments.plot.empty()) {
+    const std::string name = std::filesystem::path(arguments.estimate).filename().string();
+    hv::replay::PlotError(error, name, arguments.plot);
+  }
   const std::string text =
       arguments.json
           ? hv::replay::ErrorJson(error, arguments.options.alignment).ToString() + "\n"

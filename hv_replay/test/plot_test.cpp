@@ -1,0 +1,144 @@
+#include "hv_replay/plot.h"
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include "hv_core/error.h"
+#include "hv_replay/map_picture.h"
+#include "plot/axes.h"
+
+namespace hv::replay {
+namespace {
+
+using plot::NiceTicks;
+using plot::TickText;
+
+/// Owns the file a test draws.
+class PlotFile : public testing::Test {
+ protected:
+  void TearDown() override { std::remove(path_.c_str()); }
+  const std::string path_ = testing::TempDir() + "/hv_plot_test.png";
+};
+
+Trajectory Circle(double radius) {
+  Trajectory trajectory;
+  for (int i = 0; i < 200; ++i) {
+    const double angle = 0.03 * i;
+    const Eigen::Vector3d position(radius * std::cos(angle), radius * std::sin(angle), 0.01 * i);
+    trajectory.Append(Time::FromSeconds(100.0 + 0.1 * i),
+                      MakePose(RotationFromRpy(0, 0, angle), position));
+  }
+  return trajectory;
+}
+
+/// Pixels that differ clearly from the corner's colour.
+int DrawnPixels(const cv::Mat& image) {
+  const cv::Vec3b background = image.at<cv::Vec3b>(0, 0);
+  int drawn = 0;
+  for (int row = 0; row < image.rows; ++row) {
+    for (int column = 0; column < image.cols; ++column) {
+      drawn += cv::norm(image.at<cv::Vec3b>(row, column), background) > 60.0 ? 1 : 0;
+    }
+  }
+  return drawn;
+}
+
+TEST(Ticks, AreRoundAndInsideTheRange) {
+  EXPECT_EQ(NiceTicks({0.0, 10.0}, 5), (std::vector<double>{0, 2, 4, 6, 8, 10}));
+  const std::vector<double> small = NiceTicks({0.013, 0.041}, 3);
+  ASSERT_EQ(small.size(), 3U);
+  EXPECT_NEAR(small[0], 0.02, 1e-12);
+  EXPECT_NEAR(small[2], 0.04, 1e-12);
+  for (const double span : {1e-9, 1e-3, 7.0, 123.4, 1e6}) {
+    const std::vector<double> ticks = NiceTicks({-span, span}, 6);
+    EXPECT_GE(ticks.size(), 3U) << span;
+    EXPECT_LE(ticks.size(), 9U) << span;
+  }
+  EXPECT_EQ(NiceTicks({5.0, 5.0}, 5).size(), 1U);
+  EXPECT_EQ(NiceTicks({0.0, std::numeric_limits<double>::infinity()}, 5).size(), 1U);
+}
+
+TEST(Ticks, TextHasTheDecimalsOfItsStep) {
+  EXPECT_EQ(TickText(2.0, 1.0), "2");
+  EXPECT_EQ(TickText(0.25, 0.05), "0.25");
+  EXPECT_EQ(TickText(-1e-17, 0.1), "0.0");
+  EXPECT_EQ(TickText(1500.0, 500.0), "1500");
+}
+
+TEST(Axes, MapDataToPixels) {
+  plot::Canvas canvas(400, 300, plot::kWhite);
+  const plot::PixelRect area = {50.0, 20.0, 350.0, 120.0};
+  const plot::Axes axes = plot::Axes::EqualScale(canvas, area, {0.0, 10.0}, {0.0, 10.0});
+  const plot::PixelPoint origin = axes.ToPixel(0.0, 0.0);
+  const plot::PixelPoint right = axes.ToPixel(1.0, 0.0);
+  const plot::PixelPoint above = axes.ToPixel(0.0, 1.0);
+  EXPECT_NEAR(right.x - origin.x, origin.y - above.y, 1e-9);
+  EXPECT_GT(right.x, origin.x);
+  EXPECT_GT(axes.ToPixel(0.0, 10.0).y, area.top);
+  EXPECT_LT(origin.y, area.bottom);
+}
+
+TEST_F(PlotFile, ErrorFigureIsDrawn) {
+  const TrajectoryError error = CompareTrajectories(Circle(10.0), Circle(10.1), {});
+  PlotError(error, "test", path_);
+  const cv::Mat image = cv::imread(path_);
+  ASSERT_EQ(image.size(), cv::Size(1600, 900));
+  EXPECT_GT(DrawnPixels(image), 8000);
+}
+
+TEST_F(PlotFile, TrajectoriesAreDrawnWithTheReferenceBelow) {
+  PlotTrajectories({{"estimate", Circle(10.0), false}, {"truth", Circle(10.0), true}}, "t", path_);
+  const cv::Mat image = cv::imread(path_);
+  int blue = 0;
+  for (int row = 110; row < 640; ++row) {
+    for (int column = 80; column < 1560; ++column) {
+      const cv::Vec3b pixel = image.at<cv::Vec3b>(row, column);
+      blue += pixel[0] > 200 && pixel[2] < 80 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(blue, 1000);
+}
+
+TEST_F(PlotFile, DegenerateInputIsDrawnToo) {
+  Trajectory still;
+  still.Append(Time::FromSeconds(1.0), Pose::Identity());
+  PlotTrajectories({{"still", still, false}}, "", path_);
+  TrajectoryErrorOptions options;
+  options.alignment = Alignment::kNone;
+  PlotError(CompareTrajectories(still, still, options), "", path_);
+  EXPECT_FALSE(cv::imread(path_).empty());
+}
+
+TEST_F(PlotFile, NothingToDrawAndBadPathsAreErrors) {
+  EXPECT_THROW(PlotTrajectories({}, "", path_), InputError);
+  EXPECT_THROW(PlotError(TrajectoryError(), "", path_), InputError);
+  EXPECT_THROW(MapPicture().Save(Trajectory(), "", path_), InputError);
+  EXPECT_THROW(PlotTrajectories({{"a", Circle(1.0), false}}, "", "/nonexistent/a.png"), InputError);
+  EXPECT_THROW(PlotTrajectories({{"a", Circle(1.0), false}}, "", path_ + ".xyz"), InputError);
+}
+
+TEST_F(PlotFile, MapShowsWallsBrighterThanFloor) {
+  MapPicture map(0.05);
+  for (int i = 0; i < 200; ++i) {
+    for (int k = 0; k < 200; ++k) map.Add({0.05 * i + 0.02, 0.05 * k + 0.02, 0.0});
+    for (int k = 0; k < 60; ++k) map.Add({0.05 * i + 0.02, 5.02, 0.05 * k});
+  }
+  map.Add({1e9, 0.0, 0.0});
+  map.Add({std::nan(""), 0.0, 0.0});
+  EXPECT_EQ(map.cells(), 200U * 200U);
+  map.Save(Trajectory(), "", path_);
+  const cv::Mat image = cv::imread(path_);
+  const auto brightness = [&image](double down) {
+    const cv::Vec3b pixel = image.at<cv::Vec3b>(static_cast<int>(down * image.rows), image.cols / 2);
+    return pixel[0] + pixel[1] + pixel[2];
+  };
+  EXPECT_GT(brightness(0.498), brightness(0.3) + 150);
+  EXPECT_GT(brightness(0.3), brightness(0.01) + 15);
+}
+
+}  // namespace
+}  // namespace hv::replay
