@@ -198,7 +198,6 @@ void MotionConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("style", style, "walk, robot, segway or aggressive");
   visitor.Field("duration_s", duration_s, "length of the recording [s]");
   visitor.Field("still_s", still_s, "standing still at the start [s]");
-  visitor.Field("seed", seed, "phases of the sway, places of the stops");
 }
 
 void MotionConfig::Validate(ConfigProblems& problems) const {

@@ -70,13 +70,15 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--format", arguments.formats,
                  "one or more of " + Join(hv::sim::FormatNames()) + ", separated by commas")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->capture_default_str();
   app.add_option("--duration", arguments.duration_s, "length [s]")->capture_default_str();
   app.add_option("--seed", arguments.seed, "of clutter, motion and noise")->capture_default_str();
   app.add_option("--out", arguments.out, "directory for the results")->required();
   app.add_option("--config", arguments.config,
                  "YAML with further settings, as simulation.yaml of an earlier run");
-  app.add_option("--fault", arguments.faults, "something that goes wrong; may be repeated");
+  app.add_option("--fault", arguments.faults, "something that goes wrong; may be repeated")
+      ->allow_extra_args(false);
   app.add_option("--point-share", arguments.point_share, "share of LiDAR columns kept, in (0, 1]")
       ->capture_default_str();
   app.add_option("--threads", arguments.threads, "threads that cast rays")->capture_default_str();
@@ -84,6 +86,9 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_flag("--no-people", arguments.no_people, "nobody walks around");
   app.add_flag("--json", arguments.json, "print the summary as one JSON object");
   app.footer(Footer());
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return std::string("hv_simulate: ") + error.what() + "\n";
+  });
 }
 
 /// The settings of the file, overridden by what the command line names explicitly.
@@ -104,7 +109,6 @@ RecordingConfig MakeConfig(const CLI::App& app, const Arguments& arguments,
   if (given("--point-share")) config.point_share = arguments.point_share;
   if (arguments.no_people) config.people = false;
   if (arguments.no_noise) config.lidar_noise = config.suite.imu.noise = false;
-  config.motion.seed = config.seed;
   hv::ConfigProblems problems;
   config.Validate(problems);
   if (!problems.lines().empty()) throw hv::InputError(problems.lines().front());
@@ -186,8 +190,17 @@ void PrintText(const std::vector<Result>& results) {
   }
 }
 
-void Run(const CLI::App& app, const Arguments& arguments) {
+/// A configuration file may choose the format; the command line has the last word.
+void ChooseFormat(const CLI::App& app, Arguments& arguments) {
+  if (arguments.config.empty() || app.count("--format") > 0) return;
+  RecordingConfig config;
+  hv::ReadConfig(hv::LoadYamlFile(arguments.config), arguments.config, config);
+  arguments.formats = {config.format};
+}
+
+void Run(const CLI::App& app, Arguments& arguments) {
   if (arguments.threads < 1) throw hv::InputError("--threads: must be at least 1");
+  ChooseFormat(app, arguments);
   std::vector<RecordingConfig> configs;
   for (const std::string& format : arguments.formats) {
     configs.push_back(MakeConfig(app, arguments, format));

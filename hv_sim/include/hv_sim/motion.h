@@ -39,7 +39,7 @@ struct MotionConfig {
   std::string style = "walk";  ///< one of MotionStyles()
   double duration_s = 60.0;
   double still_s = 2.0;  ///< standing still at the start
-  int seed = 1;          ///< phases of the sway, places of the stops
+  int seed = 1;          ///< phases of the sway, places of the stops; a Recording sets it
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
