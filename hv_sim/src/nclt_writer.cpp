@@ -159,12 +159,13 @@ void NcltWriter::WriteGroundTruth() const {
   Open(file, path, {});
   file << std::setprecision(12);
   const Pose T_down_world = MakePose(RotationFromRpy(M_PI, 0.0, 0.0), Eigen::Vector3d::Zero());
-  for (const StampedPose& truth : recording_.BaseTruth().poses()) {
-    const Pose T_down_body = T_down_world * truth.pose;
+  const Trajectory truth = recording_.BaseTruth();
+  for (const StampedPose& stamped : truth.poses()) {
+    const Pose T_down_body = T_down_world * stamped.pose;
     const Eigen::Matrix3d R = T_down_body.linear();
     const Eigen::Vector3d rpy(std::atan2(R(2, 1), R(2, 2)), -std::asin(R(2, 0)),
                               std::atan2(R(1, 0), R(0, 0)));
-    file << ToMicroseconds(truth.stamp);
+    file << ToMicroseconds(stamped.stamp);
     PutVector(file, T_down_body.translation());
     PutVector(file, rpy);
     file << '\n';
