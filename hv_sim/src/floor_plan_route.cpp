@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <queue>
 
@@ -16,6 +17,8 @@ using Eigen::Vector3d;
 
 constexpr double kPromised = 0.6;   ///< [m] between route and walls
 constexpr double kSpacing = 1.0;    ///< [m] between waypoints
+constexpr double kTurnRadius = 0.7; ///< [m] of the circle to turn back on
+constexpr double kTurnRoom = 1.45;  ///< [m] clearance at its centre
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr int kOutside = -1;
 
@@ -50,7 +53,7 @@ void TransformLine(std::vector<double>& line) {
   line = std::move(result);
 }
 
-/// Distance [m] of every cell's centre to the nearest cell that is not free.
+/// Distance [m] of every cell's centre to the nearest cell that is not free, or to the border.
 std::vector<double> Clearance(const FloorPlan& plan) {
   const auto width = static_cast<std::size_t>(plan.width);
   const auto height = static_cast<std::size_t>(plan.height);
@@ -70,7 +73,13 @@ std::vector<double> Clearance(const FloorPlan& plan) {
     TransformLine(line);
     std::copy(line.begin(), line.end(), first);
   }
-  for (double& value : field) value = plan.resolution * (std::sqrt(value) - 0.5);
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    const std::size_t column = i % width;
+    const std::size_t row = i / width;
+    const std::size_t border = std::min({column, row, width - 1 - column, height - 1 - row}) + 1;
+    const double cells = std::min(std::sqrt(field[i]), static_cast<double>(border));
+    field[i] = plan.resolution * (cells - 0.5);
+  }
   return field;
 }
 
@@ -103,31 +112,37 @@ class CellGraph {
     return tree;
   }
 
-  bool Open(int cell) const { return clearance_[static_cast<std::size_t>(cell)] >= least_; }
+  bool Open(int cell) const { return Clearance(cell) >= least_; }
+  double Clearance(int cell) const { return clearance_[static_cast<std::size_t>(cell)]; }
+
+  /// Calls `visit` with each of the eight cells around one.
+  template <typename Visit>
+  void ForNeighbours(int cell, Visit visit) const {
+    const int column = cell % plan_.width;
+    const int row = cell / plan_.width;
+    for (int y = std::max(0, row - 1); y <= std::min(plan_.height - 1, row + 1); ++y) {
+      for (int x = std::max(0, column - 1); x <= std::min(plan_.width - 1, column + 1); ++x) {
+        if (x != column || y != row) visit(y * plan_.width + x);
+      }
+    }
+  }
 
  private:
   template <typename Queue>
   void Relax(int cell, Tree& tree, Queue& queue) const {
-    const int column = cell % plan_.width;
-    const int row = cell / plan_.width;
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        const int x = column + dx;
-        const int y = row + dy;
-        if (x < 0 || y < 0 || x >= plan_.width || y >= plan_.height) continue;
-        const int next = y * plan_.width + x;
-        if (!Open(next)) continue;
-        const auto index = static_cast<std::size_t>(next);
-        constexpr double kRoomy = 1.5;  // [m]
-        const double squeeze = 1.0 + 2.0 * std::max(0.0, kRoomy - clearance_[index]);
-        const double cost = tree.cost[static_cast<std::size_t>(cell)] +
-                            squeeze * plan_.resolution * std::hypot(dx, dy);
-        if (cost >= tree.cost[index]) continue;
-        tree.cost[index] = cost;
-        tree.parent[index] = cell;
-        queue.push({cost, next});
-      }
-    }
+    const Eigen::Vector2d at = plan_.Center(cell % plan_.width, cell / plan_.width);
+    ForNeighbours(cell, [&](int next) {
+      if (!Open(next)) return;
+      const auto index = static_cast<std::size_t>(next);
+      constexpr double kRoomy = 1.5;  // [m]
+      const double squeeze = 1.0 + 2.0 * std::max(0.0, kRoomy - clearance_[index]);
+      const double step = (plan_.Center(next % plan_.width, next / plan_.width) - at).norm();
+      const double cost = tree.cost[static_cast<std::size_t>(cell)] + squeeze * step;
+      if (cost >= tree.cost[index]) return;
+      tree.cost[index] = cost;
+      tree.parent[index] = cell;
+      queue.push({cost, next});
+    });
   }
 
   const FloorPlan& plan_;
@@ -135,17 +150,20 @@ class CellGraph {
   double least_;
 };
 
-std::vector<int> LargestComponent(const CellGraph& graph, int cell_count) {
-  std::vector<bool> seen(static_cast<std::size_t>(cell_count), false);
+std::vector<int> LargestComponent(const CellGraph& graph, std::size_t cell_count) {
+  std::vector<bool> seen(cell_count, false);
   std::vector<int> largest;
-  for (int cell = 0; cell < cell_count; ++cell) {
-    if (seen[static_cast<std::size_t>(cell)] || !graph.Open(cell)) continue;
-    const CellGraph::Tree tree = graph.From({cell});
+  for (std::size_t start = 0; start < cell_count; ++start) {
     std::vector<int> component;
-    for (int other = 0; other < cell_count; ++other) {
-      if (tree.cost[static_cast<std::size_t>(other)] == kFar) continue;
-      seen[static_cast<std::size_t>(other)] = true;
-      component.push_back(other);
+    const auto visit = [&](int cell) {
+      const auto index = static_cast<std::size_t>(cell);
+      if (seen[index] || !graph.Open(cell)) return;
+      seen[index] = true;
+      component.push_back(cell);
+    };
+    visit(static_cast<int>(start));
+    for (std::size_t next = 0; next < component.size(); ++next) {
+      graph.ForNeighbours(component[next], visit);
     }
     if (component.size() > largest.size()) largest = std::move(component);
   }
@@ -168,13 +186,16 @@ class RoutePlanner {
 
   /// Cells of a walk that visits far places one after the other.
   std::vector<int> Walk(Random& random) const {
-    const std::vector<int> area = LargestComponent(graph_, plan_.width * plan_.height);
+    const std::vector<int> area = LargestComponent(graph_, plan_.cells.size());
     if (area.empty()) return {};
-    const int start = Farthest(graph_.From({area.front()}), area);
-    std::vector<int> walk = {start};
+    std::vector<int> places;
+    std::copy_if(area.begin(), area.end(), std::back_inserter(places),
+                 [this](int cell) { return graph_.Clearance(cell) >= kTurnRoom; });
+    if (places.empty()) places = area;
+    std::vector<int> walk = {Farthest(graph_.From({area.front()}), places)};
     constexpr int kLegs = 12;
     for (int leg = 0; leg < kLegs; ++leg) {
-      if (!AppendLeg(area, random, walk)) break;
+      if (!AppendLeg(places, random, walk)) break;
     }
     return walk;
   }
@@ -209,13 +230,13 @@ class RoutePlanner {
     });
   }
 
-  /// Goes on to a place far from all visited ones; false when every way there turns back.
-  bool AppendLeg(const std::vector<int>& area, Random& random, std::vector<int>& walk) const {
+  /// Goes on to one of `places` far from all visited ones; false when there is no way on.
+  bool AppendLeg(const std::vector<int>& places, Random& random, std::vector<int>& walk) const {
     constexpr int kCandidates = 60;
     constexpr double kNear = 3.0;  // [m]
     const CellGraph::Tree unvisited = graph_.From(walk);
-    std::vector<int> goals = {Farthest(unvisited, area)};
-    for (int i = 0; i < kCandidates; ++i) goals.push_back(area[random.Bits() % area.size()]);
+    std::vector<int> goals = {Farthest(unvisited, places)};
+    for (int i = 0; i < kCandidates; ++i) goals.push_back(places[random.Bits() % places.size()]);
     std::sort(goals.begin(), goals.end(), [&unvisited](int a, int b) {
       return unvisited.cost[static_cast<std::size_t>(a)] >
              unvisited.cost[static_cast<std::size_t>(b)];
@@ -224,11 +245,41 @@ class RoutePlanner {
     for (const int goal : goals) {
       if (unvisited.cost[static_cast<std::size_t>(goal)] < kNear) return false;
       const std::vector<int> leg = PathTo(from_here, goal);
-      if (TurnsBack(walk, leg)) continue;
-      walk.insert(walk.end(), leg.begin() + 1, leg.end());
+      const bool turns_back = TurnsBack(walk, leg);
+      if (turns_back && graph_.Clearance(walk.back()) < kTurnRoom) continue;
+      if (turns_back) {
+        AppendTurn(leg, walk);
+      } else {
+        walk.insert(walk.end(), leg.begin() + 1, leg.end());
+      }
       return true;
     }
     return false;
+  }
+
+  /// Turns on a circle around the end of the walk instead of on the spot, then takes the leg.
+  void AppendTurn(const std::vector<int>& leg, std::vector<int>& walk) const {
+    const Vector2d center = At(walk.back());
+    const auto inside = [&](int cell) { return (At(cell) - center).norm() < kTurnRadius; };
+    while (walk.size() > 1 && inside(walk.back())) walk.pop_back();
+    const auto exit = std::find_if_not(leg.begin(), leg.end(), inside);
+    const Vector2d in = At(walk.back()) - center;
+    const Vector2d out = (exit == leg.end() ? At(leg.back()) : At(*exit)) - center;
+    const double from = std::atan2(in.y(), in.x());
+    double turn = std::atan2(out.y(), out.x()) - from;
+    while (turn < M_PI) turn += 2.0 * M_PI;
+    const int steps = static_cast<int>(kTurnRadius * turn / plan_.resolution);
+    for (int i = 1; i < steps; ++i) {
+      const double angle = from + turn * i / steps;
+      const Vector2d at = center + kTurnRadius * Vector2d(std::cos(angle), std::sin(angle));
+      walk.push_back(CellAt(at));
+    }
+    walk.insert(walk.end(), exit, leg.end());
+  }
+
+  int CellAt(const Vector2d& point) const {
+    const Vector2d cell = (point - plan_.origin) / plan_.resolution;
+    return static_cast<int>(cell.y()) * plan_.width + static_cast<int>(cell.x());
   }
 
   bool TurnsBack(const std::vector<int>& walk, const std::vector<int>& leg) const {
@@ -242,6 +293,32 @@ class RoutePlanner {
   const FloorPlan& plan_;
   CellGraph graph_;
 };
+
+/// The grid to search: fine enough for rooms, coarse enough to be quick.
+struct Coarse {
+  FloorPlan plan;  ///< without cells' contents
+  std::vector<double> clearance;
+};
+
+Coarse Coarsen(const FloorPlan& fine, const std::vector<double>& clearance) {
+  const int factor = std::max(1, static_cast<int>(0.12 / fine.resolution));
+  Coarse coarse{fine, {}};
+  coarse.plan.width = fine.width / factor;
+  coarse.plan.height = fine.height / factor;
+  coarse.plan.resolution = fine.resolution * factor;
+  for (int row = 0; row < coarse.plan.height; ++row) {
+    for (int column = 0; column < coarse.plan.width; ++column) {
+      const int center_row = row * factor + factor / 2;
+      const int center_column = column * factor + factor / 2;
+      const auto index = static_cast<std::size_t>(center_row) *
+                             static_cast<std::size_t>(fine.width) +
+                         static_cast<std::size_t>(center_column);
+      coarse.clearance.push_back(clearance[index]);
+    }
+  }
+  coarse.plan.cells.assign(coarse.clearance.size(), Cell::kFree);
+  return coarse;
+}
 
 double LeastClearance(const FloorPlan& plan, const std::vector<double>& clearance,
                       const std::vector<Vector3d>& route) {
@@ -266,18 +343,20 @@ double Length(const std::vector<Vector3d>& route) {
 }  // namespace
 
 std::vector<Vector3d> PlanRoute(const FloorPlan& plan, std::uint32_t seed) {
-  constexpr double kShortest = 5.0;  // [m]
+  constexpr double kShortest = 5.0;    // [m]
+  constexpr double kLongEnough = 100.0;  // [m]
   const std::vector<double> clearance = Clearance(plan);
+  const Coarse coarse = Coarsen(plan, clearance);
   std::vector<Vector3d> best;
   // Smoothing and rounding cut corners, so plan with some reserve; with less if the rooms are small.
-  for (const double reserve : {0.35, 0.2, 0.1}) {
+  for (const double reserve : {0.4, 0.25, 0.15, 0.08}) {
     Random random({seed});
-    const RoutePlanner planner(plan, clearance, kPromised + reserve + plan.resolution);
+    const RoutePlanner planner(coarse.plan, coarse.clearance, kPromised + reserve);
     const std::vector<Vector3d> route = planner.Waypoints(planner.Walk(random));
-    if (route.size() < 2 || LeastClearance(plan, clearance, route) < kPromised + plan.resolution) {
-      continue;
-    }
-    if (Length(route) > Length(best)) best = route;
+    const bool keeps_off = route.size() >= 2 && LeastClearance(plan, clearance, route) >=
+                                                    kPromised + 0.7 * plan.resolution;
+    if (keeps_off && Length(route) > Length(best)) best = route;
+    if (Length(best) > kLongEnough) break;
   }
   if (Length(best) < kShortest) {
     throw InputError(plan.path + ": no way of " + std::to_string(static_cast<int>(kShortest)) +

@@ -85,7 +85,7 @@ void AddLining(MeshBuilder& mesh, const Axis& axis, double from, double to, doub
   });
   mesh.SetReflectivity(0.25);
   mesh.AddPatch(rings, 8, [&](double s, double t) -> Vector3d {
-    return station(s) * Vector3d(0.0, (2.0 * t - 1.0) * kHalfWidth, 0.0);
+    return station(s) * Vector3d(0.0, (2.0 * t - 1.0) * (kHalfWidth + 0.4), 0.0);
   });
 }
 
