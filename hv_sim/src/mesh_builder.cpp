@@ -57,6 +57,11 @@ std::uint32_t MeshBuilder::AddVertex(const Vector3d& point) {
 }
 
 void MeshBuilder::AddFace(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  // The poles of patches give triangles without area, of no use to distance queries.
+  constexpr float kLeastArea = 1e-8F;  // [m^2]
+  const Eigen::Vector3f u = mesh_.vertices[b] - mesh_.vertices[a];
+  const Eigen::Vector3f v = mesh_.vertices[c] - mesh_.vertices[a];
+  if (u.cross(v).norm() < kLeastArea) return;
   mesh_.triangles.push_back({a, b, c});
   mesh_.reflectivity.push_back(reflectivity_);
 }

@@ -77,7 +77,7 @@ bool VisitTriangle(RTCPointQueryFunctionArguments* arguments) {
   const auto corner = [&](std::size_t i) { return query->mesh->vertices[corners[i]]; };
   const Vector3f nearest = NearestInTriangle(query->point, corner(0), corner(1), corner(2));
   const float distance = (nearest - query->point).norm();
-  if (distance >= arguments->query->radius) return false;
+  if (!(distance < arguments->query->radius)) return false;
   arguments->query->radius = distance;
   return true;
 }

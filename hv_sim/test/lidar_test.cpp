@@ -128,7 +128,7 @@ TEST_P(EveryModel, FiresInOrderAndOnTime) {
                             model.firing_delay[i % 32];
     ASSERT_EQ(point.ring, i % 32);
     ASSERT_NEAR(static_cast<double>(point.time), expected, 1e-8);
-    if (i > 0) ASSERT_GT(point.time, scan.points[i - 1].time);
+    ASSERT_TRUE(i == 0 || point.time > scan.points[i - 1].time);
   }
   EXPECT_EQ(scan.stamp, Time::FromSeconds(5.0));
   EXPECT_EQ(scan.duration, static_cast<double>(scan.points.back().time));
@@ -171,7 +171,7 @@ TEST_P(EveryModel, ResultDoesNotDependOnThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, EveryModel, testing::Values(PandarXt32(), Hdl32e()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& parameter) { return parameter.param.name; });
 
 TEST(PandarXt32, MatchesARealUnit) {
   const LidarModel model = PandarXt32();

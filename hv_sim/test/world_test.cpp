@@ -103,7 +103,7 @@ TEST_P(EveryWorld, DependsOnItsSeedAlone) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryWorld, testing::ValuesIn(WorldNames()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& parameter) { return parameter.param; });
 
 TEST(World, ConstructionRouteClimbsToTheSecondFloorAndBack) {
   const World world = MakeWorld("construction", 1);
