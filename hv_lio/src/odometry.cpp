@@ -53,6 +53,21 @@ void Odometry::Start(Time stamp, const InitialState& initial) {
   initialized_ = true;
 }
 
+void Odometry::MoveClock(Time stamp) {
+  constexpr double kMissedSeconds = 1.0;
+  constexpr double kMissedAcceleration = 2.0;
+  constexpr double kMissedTurn = 0.3;
+  const double speed_change = kMissedAcceleration * kMissedSeconds;
+  const double distance = (state_.velocity.norm() + 0.5 * speed_change) * kMissedSeconds;
+  const auto widen = [this](int index, double sigma) {
+    covariance_.diagonal().segment<3>(index).array() += sigma * sigma;
+  };
+  widen(ErrorIndex::kPosition, distance);
+  widen(ErrorIndex::kRotation, kMissedTurn);
+  widen(ErrorIndex::kVelocity, speed_change);
+  stamp_ = stamp;
+}
+
 void Odometry::Reset(bool keep_pose) {
   if (keep_pose && initialized_) {
     kept_pose_ = state_.T_odom_imu();
@@ -98,7 +113,7 @@ ScanResult Odometry::Process(const Scan& scan, const std::vector<ImuStep>& steps
   motion.knots = PropagateKnots(steps, stamp_ - scan.stamp);
   motion.end_time = scan.end() - scan.stamp;
   stamp_ = scan.end();
-  arena_.execute([&] {
+  arena_.Execute([&] {
     auto deskewed = std::make_shared<std::vector<Point>>(Deskew(scan, motion, T_imu_lidar_));
     const std::vector<SurfaceCell> cells = grid_.Group(*deskewed, T_imu_lidar_.translation());
     result.deskewed = std::move(deskewed);

@@ -71,7 +71,11 @@ std::optional<OdometryEstimate> Pipeline::AddImu(const ImuSample& sample) {
 void Pipeline::AddScan(Scan scan, double decode_ms) {
   ++counters_.scans;
   scan.stamp = scan.stamp + config_.lidar_time_offset_s;
-  scans_.push_back({std::move(scan), decode_ms});
+  const auto later = [](Time stamp, const WaitingScan& waiting) {
+    return stamp < waiting.scan.stamp;
+  };
+  const auto place = std::upper_bound(scans_.begin(), scans_.end(), scan.stamp, later);
+  scans_.insert(place, {std::move(scan), decode_ms});
 }
 
 bool Pipeline::CoveredByImu(const Scan& scan) const {

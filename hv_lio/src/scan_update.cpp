@@ -58,23 +58,12 @@ struct ScanUpdate::Normal {
   std::size_t count = 0;
   std::size_t planar = 0;
   double abs_residual = 0.0;
-  /// Directions of the residuals, equally weighted, for degeneracy: translation and rotation part.
-  Eigen::Matrix3d translation_directions = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d rotation_directions = Eigen::Matrix3d::Zero();
-
   void Add(const Residual& residual, double weight) {
     const Vector6d scaled = weight * residual.jacobian;
     information.noalias() += scaled * residual.jacobian.transpose();
     gradient += residual.value * scaled;
     abs_residual += std::abs(residual.value);
     ++count;
-    const Eigen::Vector3d direction = residual.jacobian.head<3>();
-    translation_directions.noalias() += direction * direction.transpose();
-    const double arm = residual.jacobian.tail<3>().norm();
-    if (arm > 1e-9) {
-      const Eigen::Vector3d turn = residual.jacobian.tail<3>() / std::max(arm, 1.0);
-      rotation_directions.noalias() += turn * turn.transpose();
-    }
   }
 
   void Add(const Normal& other) {
@@ -83,8 +72,6 @@ struct ScanUpdate::Normal {
     count += other.count;
     planar += other.planar;
     abs_residual += other.abs_residual;
-    translation_directions += other.translation_directions;
-    rotation_directions += other.rotation_directions;
   }
 };
 
@@ -138,10 +125,10 @@ ScanUpdate::Normal ScanUpdate::Accumulate(const std::vector<SurfaceCell>& cells,
 }
 
 void ScanUpdate::FindDegenerate(const Normal& normal, UpdateSummary& summary) const {
-  const auto weak = [&](const Eigen::Matrix3d& directions) {
+  const auto weak = [&](const Eigen::Matrix3d& information) {
     std::vector<Eigen::Vector3d> found;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(directions);
-    const double trace = std::max(directions.trace(), 1e-12);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information);
+    const double trace = std::max(information.trace(), 1e-12);
     for (int i = 0; i < 3; ++i) {
       if (solver.eigenvalues()[i] < config_.degenerate_ratio * trace) {
         found.emplace_back(solver.eigenvectors().col(i));
@@ -149,8 +136,8 @@ void ScanUpdate::FindDegenerate(const Normal& normal, UpdateSummary& summary) co
     }
     return found;
   };
-  summary.degenerate_translation = weak(normal.translation_directions);
-  summary.degenerate_rotation = weak(normal.rotation_directions);
+  summary.degenerate_translation = weak(normal.information.topLeftCorner<3, 3>());
+  summary.degenerate_rotation = weak(normal.information.bottomRightCorner<3, 3>());
 }
 
 void ScanUpdate::RemoveDegenerate(const UpdateSummary& summary, Normal& normal) {

@@ -19,6 +19,9 @@ void VoxelFitConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("settle_scans", settle_scans,
                 "scans after which a planar voxel is settled and no longer changes");
   visitor.Field("refit_percent", refit_percent, "growth after which a voxel is fitted again [%]");
+  visitor.Field("gaussian_baseline_m", gaussian_baseline_m,
+                "a voxel that is no plane must be seen from places this far apart, so that it "
+                "shows its shape and not the pattern of the scan lines [m]");
 }
 
 void VoxelFitConfig::Validate(ConfigProblems& problems) const {
@@ -30,6 +33,8 @@ void VoxelFitConfig::Validate(ConfigProblems& problems) const {
   problems.Require(scan_sigma_m > 0.0, "map.fit.scan_sigma_m", "must be positive");
   problems.Require(settle_scans >= 1 && settle_scans <= 60000, "map.fit.settle_scans",
                    "must lie between 1 and 60000");
+  problems.Require(gaussian_baseline_m >= 0.0, "map.fit.gaussian_baseline_m",
+                   "must not be negative");
   problems.Require(refit_percent >= 0, "map.fit.refit_percent", "must not be negative");
 }
 

@@ -75,6 +75,7 @@ Eigen::Vector3d VoxelMap::RootCenter(std::uint32_t root) const {
 
 void VoxelMap::Insert(const std::vector<SurfaceCell>& cells, const Pose& T_odom_imu) {
   ++scan_number_;
+  sensor_position_ = T_odom_imu.translation().cast<float>();
   const std::vector<Entry> entries = MakeEntries(cells, T_odom_imu);
   std::vector<Target> targets;
   targets.reserve(entries.size());
@@ -132,7 +133,11 @@ void VoxelMap::Accumulate(const Entry& entry, Voxel& voxel) {
   voxel.sums.Add(entry.count, entry.mean, entry.scatter);
   if (voxel.last_scan == scan_number_) return;
   voxel.last_scan = scan_number_;
+  if (voxel.scans == 0) voxel.first_seen_from = sensor_position_;
   ++voxel.scans;
+  const double baseline =
+      static_cast<double>((sensor_position_ - voxel.first_seen_from).norm());
+  voxel.seen_from_afar = voxel.seen_from_afar || baseline >= config_.fit.gaussian_baseline_m;
   const double shared = config_.fit.scan_sigma_m * config_.fit.scan_sigma_m;
   voxel.information += 1.0 / (shared + entry.noise);
 }
@@ -246,7 +251,8 @@ const SurfaceFeature* VoxelMap::Find(const Eigen::Vector3d& point) const {
   const SurfaceFeature* gaussian = nullptr;
   for (double edge = config_.voxel_size_m;; edge *= 0.5) {
     if (voxel->planar()) return &voxel->feature;
-    if (voxel->feature.kind == SurfaceFeature::Kind::kGaussian) gaussian = &voxel->feature;
+    const bool fitted = voxel->feature.kind == SurfaceFeature::Kind::kGaussian;
+    if (fitted && voxel->seen_from_afar) gaussian = &voxel->feature;
     if (voxel->children == kNoIndex) return gaussian;
     const int octant = OctantOf(local, center);
     voxel = &blocks_[voxel->children][static_cast<std::size_t>(octant)];

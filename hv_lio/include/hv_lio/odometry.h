@@ -1,16 +1,14 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <tbb/task_arena.h>
 
 #include "hv_core/imu_sample.h"
 #include "hv_core/scan.h"
 #include "hv_lio/lio_config.h"
 #include "hv_lio/odometry_result.h"
+#include "hv_lio/thread_arena.h"
 
 namespace hv::lio {
 
@@ -35,8 +33,9 @@ class Odometry {
   /// Propagates state and covariance without a scan.
   void Propagate(const std::vector<ImuStep>& steps);
 
-  /// Moves the clock without moving the state, after a jump of the sensor clock.
-  void MoveClock(Time stamp) { stamp_ = stamp; }
+  /// Moves the clock without moving the state, after a jump of the sensor clock: up to a second of
+  /// motion may have been missed, and the covariance says so.
+  void MoveClock(Time stamp);
 
   /// Forgets the map and the motion. `keep_pose`: the next Start goes on from the current pose.
   void Reset(bool keep_pose);
@@ -58,7 +57,7 @@ class Odometry {
   CellGrid grid_;
   ScanUpdate update_;
   VoxelMap map_;
-  tbb::task_arena arena_;
+  ThreadArena arena_;
   NavState state_;
   ErrorMatrix covariance_ = ErrorMatrix::Identity();
   std::optional<Pose> kept_pose_;

@@ -17,7 +17,7 @@ struct UpdateConfig {
   double huber_sigmas = 1.5;
   double model_sigma_m = 0.01;
   double gaussian_weight = 0.5;
-  double gaussian_sigma_m = 0.08;
+  double gaussian_sigma_m = 0.035;
   double information_scale = 0.1;
   int min_residuals = 30;
   double degenerate_ratio = 0.01;

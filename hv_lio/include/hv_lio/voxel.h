@@ -51,6 +51,7 @@ struct VoxelFitConfig {
   double scan_sigma_m = 0.004;
   int settle_scans = 50;
   int refit_percent = 5;
+  double gaussian_baseline_m = 0.3;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
@@ -64,11 +65,13 @@ struct Voxel {
   SurfaceFeature feature;
   double information = 0.0;    ///< of the plane's offset, summed over scans [1/m^2]
   double fitted_count = 0.0;   ///< points at the last fit
+  Eigen::Vector3f first_seen_from = Eigen::Vector3f::Zero();  ///< sensor position, odom [m]
   std::uint32_t children = kNoIndex;  ///< block of eight, kNoIndex when not subdivided
   std::uint32_t last_scan = 0;
   std::uint16_t scans = 0;
   std::uint8_t disagreements = 0;  ///< settled voxels: recent scans that contradict the plane
   bool settled = false;
+  bool seen_from_afar = false;  ///< from places at least gaussian_baseline_m apart
 
   bool planar() const { return feature.kind == SurfaceFeature::Kind::kPlane; }
 };

@@ -102,6 +102,7 @@ class VoxelMap {
   std::size_t blocks_in_use_ = 0;
   std::size_t evictions_ = 0;
   std::uint32_t scan_number_ = 0;
+  Eigen::Vector3f sensor_position_ = Eigen::Vector3f::Zero();
 };
 
 }  // namespace hv::lio

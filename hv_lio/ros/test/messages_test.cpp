@@ -1,0 +1,93 @@
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "conversions.h"
+#include "path_history.h"
+#include "voxel_markers.h"
+
+namespace hv::lio {
+namespace {
+
+Pose PoseAtX(double x) {
+  return MakePose(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0.0, 0.0));
+}
+
+TEST(Conversions, StampsSurviveTheWayThroughRos) {
+  const Time stamp = Time::FromNanoseconds(1646310000819997311);
+  EXPECT_EQ(FromRos(ToRos(stamp)), stamp);
+  EXPECT_EQ(ToRos(Time::FromNanoseconds(-5)), ros::Time(0, 0));
+}
+
+TEST(Conversions, CloudsAreLaidOutAsDeclared) {
+  std::vector<Point> points(2);
+  points[1].y = 2.5F;
+  points[1].intensity = 9.0F;
+  const auto cloud = ToCloudMessage(points);
+  ASSERT_EQ(cloud->data.size(), std::size_t{cloud->width} * cloud->point_step);
+  float value = 0.0F;
+  std::memcpy(&value, &cloud->data[cloud->point_step + cloud->fields[1].offset], sizeof(value));
+  EXPECT_EQ(value, 2.5F);
+  std::memcpy(&value, &cloud->data[cloud->point_step + cloud->fields[3].offset], sizeof(value));
+  EXPECT_EQ(value, 9.0F);
+}
+
+TEST(Conversions, DecimationKeepsOnePointPerCube) {
+  std::vector<Point> points(4);
+  points[1].x = 0.4F;
+  points[2].x = 0.6F;
+  points[3].x = -0.1F;
+  EXPECT_EQ(Decimated(points, 0.5).size(), 3U);
+  EXPECT_EQ(Decimated(points, 0.0).size(), 4U);
+}
+
+TEST(PathHistory, IsBoundedAndKeepsBothEnds) {
+  PathHistory path(0.1, 100);
+  for (int i = 0; i <= 1000; ++i) path.Add(Time::FromSeconds(1.0 + i), PoseAtX(0.2 * i));
+  EXPECT_LE(path.size(), 100U);
+  const nav_msgs::Path message = path.ToMessage("odom");
+  EXPECT_EQ(message.poses.front().pose.position.x, 0.0);
+  EXPECT_GT(message.poses.back().pose.position.x, 190.0);
+  EXPECT_EQ(message.header.frame_id, "odom");
+}
+
+TEST(PathHistory, SkipsStandstillAndStartsOverWhenTimeJumpsBack) {
+  PathHistory path(0.1, 100);
+  EXPECT_TRUE(path.Add(Time::FromSeconds(10.0), PoseAtX(0.0)));
+  EXPECT_FALSE(path.Add(Time::FromSeconds(11.0), PoseAtX(0.05)));
+  EXPECT_TRUE(path.Add(Time::FromSeconds(2.0), PoseAtX(0.0)));
+  EXPECT_EQ(path.size(), 1U);
+}
+
+TEST(VoxelMarkers, EachKindHasItsNamespaceAndMergedPlanesShareAColour) {
+  std::vector<VoxelView> voxels(4);
+  voxels[0].kind = VoxelView::Kind::kPlane;
+  for (int i : {1, 2}) {
+    voxels[i].kind = VoxelView::Kind::kMergedPlane;
+    voxels[i].plane_id = 5;
+  }
+  voxels[3].kind = VoxelView::Kind::kMergedPlane;
+  voxels[3].plane_id = 6;
+  for (VoxelView& voxel : voxels) voxel.size = 1.0;
+  const auto array = ToVoxelMarkers(voxels, "odom", Time::FromSeconds(1.0));
+  ASSERT_EQ(array.markers.size(), 3U);
+  EXPECT_EQ(array.markers[0].points.size(), 36U);  // a disc of 12 triangles
+  ASSERT_EQ(array.markers[1].colors.size(), 18U);  // three squares of 2 triangles
+  EXPECT_EQ(array.markers[1].colors[0].r, array.markers[1].colors[6].r);
+  EXPECT_NE(array.markers[1].colors[0].r, array.markers[1].colors[12].r);
+  EXPECT_EQ(array.markers[2].action, visualization_msgs::Marker::DELETE);
+}
+
+TEST(VoxelMarkers, ShapesLieInTheirPlane) {
+  VoxelView voxel;
+  voxel.kind = VoxelView::Kind::kPlane;
+  voxel.center = {1.0, 2.0, 3.0};
+  voxel.sigma = {0.2, 0.1, 0.0};
+  voxel.size = 1.0;
+  voxel.axes = RotationFromRpy(0.0, M_PI / 2.0, 0.0);  // the normal along x
+  const auto array = ToVoxelMarkers({voxel}, "odom", Time::FromSeconds(1.0));
+  for (const auto& point : array.markers[0].points) EXPECT_NEAR(point.x, 1.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace hv::lio
