@@ -119,7 +119,7 @@ cv::Mat MapPainter::Paint() const {
     counts.push_back(count);
     heights.push_back(height_sum_.ptr<float>()[i] / count);
   }
-  const float full = std::log1p(Quantile(counts, 0.98));
+  const float full = std::log1p(std::max(Quantile(counts, 0.98), 20.0F * Quantile(counts, 0.5)));
   const float low = Quantile(heights, 0.02);
   const float span = std::max(Quantile(heights, 0.98) - low, 0.1F);
   cv::Mat picture(count_.size(), CV_32FC3);
