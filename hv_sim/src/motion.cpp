@@ -118,7 +118,9 @@ void SetTranslation(const Jet& x, const Jet& y, const Jet& z, MotionState& state
 class StyledMotion : public Motion {
  public:
   StyledMotion(const World& world, const MotionConfig& config, const Style& style)
-      : style_(style), spline_(style.plan.step_s, PlanControls(world, config, style.plan)) {
+      : style_(style),
+        skip_s_(config.skip_s),
+        spline_(style.plan.step_s, PlanControls(world, config, style.plan)) {
     std::mt19937 random(static_cast<std::uint32_t>(config.seed) + 0x5EEDU);
     std::uniform_real_distribution<double> phase(0.0, 2.0 * M_PI);
     std::uniform_real_distribution<double> detune(0.95, 1.05);
@@ -129,7 +131,8 @@ class StyledMotion : public Motion {
     }
   }
 
-  MotionState At(double time_s) const override {
+  MotionState At(double seconds) const override {
+    const double time_s = seconds + skip_s_;
     const MotionSpline::Sample plan = spline_.At(time_s);
     const auto channel = [&plan](Channel index) {
       return Jet{plan.value[index], plan.first[index], plan.second[index]};
@@ -172,6 +175,7 @@ class StyledMotion : public Motion {
   }
 
   Style style_;
+  double skip_s_;
   MotionSpline spline_;
   std::vector<Wave> waves_;
 };
@@ -198,12 +202,14 @@ void MotionConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("style", style, "walk, robot, segway or aggressive");
   visitor.Field("duration_s", duration_s, "length of the recording [s]");
   visitor.Field("still_s", still_s, "standing still at the start [s]");
+  visitor.Field("skip_s", skip_s, "left out before the recording; > still_s starts moving [s]");
 }
 
 void MotionConfig::Validate(ConfigProblems& problems) const {
   problems.Require(Styles().count(style) > 0, "style", "unknown style '" + style + "'");
   problems.Require(duration_s > 0.0 && duration_s <= 1e5, "duration_s", "must be in (0, 1e5]");
   problems.Require(still_s >= 0.0, "still_s", "must not be negative");
+  problems.Require(skip_s >= 0.0, "skip_s", "must not be negative");
 }
 
 std::vector<std::string> MotionStyles() { return {"walk", "robot", "segway", "aggressive"}; }

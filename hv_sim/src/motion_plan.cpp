@@ -17,7 +17,7 @@ class Planner {
  public:
   Planner(const MotionConfig& config, const PlanProfile& profile)
       : profile_(profile), random_(static_cast<std::uint32_t>(config.seed)),
-        wanted_(static_cast<std::size_t>(std::ceil(config.duration_s / profile.step_s)) +
+        wanted_(static_cast<std::size_t>(std::ceil((config.skip_s + config.duration_s) / profile.step_s)) +
                 2 * kSplineReach) {}
 
   bool done() const { return controls_.size() >= wanted_; }
@@ -128,7 +128,7 @@ class Planner {
 
 std::vector<Controls> PlanControls(const World& world, const MotionConfig& config,
                                    const PlanProfile& profile) {
-  const double length = profile.speed * config.duration_s + 1.0;
+  const double length = profile.speed * (config.skip_s + config.duration_s) + 1.0;
   const std::vector<PathRun> runs = MakePath(world, length, profile.corner);
   Planner planner(config, profile);
   planner.Stand(runs.front(), 0, config.still_s + kSplineReach * profile.step_s, 0.0);

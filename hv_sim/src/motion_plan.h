@@ -22,7 +22,7 @@ struct PlanProfile {
   bool follows_slope = false;  ///< wheels tilt with the floor, hands do not
 };
 
-/// Controls of a MotionSpline with step `profile.step_s`, covering `config.duration_s`.
+/// Controls of a MotionSpline with step `profile.step_s`, covering skip_s and duration_s.
 std::vector<Controls> PlanControls(const World& world, const MotionConfig& config,
                                    const PlanProfile& profile);
 

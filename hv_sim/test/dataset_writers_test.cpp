@@ -178,6 +178,41 @@ TEST_F(DatasetTest, UndistortedPointsLieOnTheWalls) {
   }
 }
 
+Pose ReadExtrinsic(const std::string& path) {
+  const YAML::Node node = YAML::LoadFile(path)["extrinsic"];
+  const auto t = node["translation_m"].as<std::vector<double>>();
+  const auto q = node["rotation_xyzw"].as<std::vector<double>>();
+  return MakePose(Eigen::Quaterniond(q[3], q[0], q[1], q[2]), Eigen::Vector3d(t[0], t[1], t[2]));
+}
+
+TEST_F(DatasetTest, FilesAloneExplainThePoints) {
+  for (const std::string format : {"hilti", "robot"}) {
+    RecordingConfig config = SmallRecording(format, 6.0);
+    config.motion.style = "walk";
+    config.lidar_noise = false;
+    const Recording recording(BoxRoom(20, 14), config);
+    Write(recording, format);
+    const Trajectory truth = ReadTum(Path(format + "/truth.tum"));
+    const Pose T_imu_lidar = ReadExtrinsic(Path(format + "/calibration.yaml"));
+    const std::string topic = format == "robot" ? "/points" : "/hesai/pandar";
+    PointCloudDecoder decoder{PointCloudDecoderConfig()};
+    std::size_t checked = 0;
+    for (const auto& cloud :
+         ReadTopic<sensor_msgs::PointCloud2>(Path(format + "/recording.bag"), topic)) {
+      const Scan scan = decoder.Decode(ViewOf(cloud)).scan;
+      for (std::size_t k = 0; k < scan.points.size(); k += 61) {
+        const Point& point = scan.points[k];
+        const auto pose = truth.Interpolate(scan.stamp + static_cast<double>(point.time));
+        ASSERT_TRUE(pose.has_value());
+        const Eigen::Vector3d at = *pose * T_imu_lidar * Eigen::Vector3d(point.x, point.y, point.z);
+        ASSERT_LT(recording.lidar().DistanceToSurface(at, 1.0), 0.005) << format;
+        ++checked;
+      }
+    }
+    EXPECT_GT(checked, 1000U);
+  }
+}
+
 TEST_F(DatasetTest, TruthCoversEveryScanEnd) {
   const Recording recording(BoxRoom(20, 14), SmallRecording("hilti", 2.0));
   Write(recording, "hilti");

@@ -93,8 +93,8 @@ TEST_P(ImuStyleTest, NoiseFreeReadingsIntegrateBackToTheTruth) {
   }
   const Pose truth = Attached(motion->At(60.0), T_body_imu).T_world_body;
   EXPECT_GT((truth.translation() - motion->At(0.0).T_world_body.translation()).norm(), 1.0);
-  EXPECT_LT((strapdown.pose().translation() - truth.translation()).norm(), 0.01);
-  EXPECT_LT(RotationDistance(strapdown.pose(), truth) * 180.0 / M_PI, 0.05);
+  EXPECT_LT((strapdown.pose().translation() - truth.translation()).norm(), 0.002);
+  EXPECT_LT(RotationDistance(strapdown.pose(), truth) * 180.0 / M_PI, 0.005);
 }
 
 INSTANTIATE_TEST_SUITE_P(Styles, ImuStyleTest, testing::ValuesIn(MotionStyles()),

@@ -199,6 +199,18 @@ TEST(MotionTest, SeedChangesTheSwayAndNothingElseDoes) {
             1e-3);
 }
 
+TEST(MotionTest, CanStartInMotion) {
+  MotionConfig config = Config("walk", 30.0);
+  const auto whole = MakeMotion(Loop(), config);
+  config.skip_s = 10.0;
+  const auto later = MakeMotion(Loop(), config);
+  EXPECT_GT(later->At(0.0).velocity.norm(), 0.3);
+  for (double t = 0.0; t < 20.0; t += 1.3) {
+    const Pose expected = whole->At(t + 10.0).T_world_body;
+    EXPECT_LT((later->At(t).T_world_body.matrix() - expected.matrix()).norm(), 1e-9);
+  }
+}
+
 TEST(MotionTest, RefusesWhatItCannotDo) {
   EXPECT_THROW(MakeMotion(Loop(), Config("fly", 10.0)), InputError);
   World world = Loop();

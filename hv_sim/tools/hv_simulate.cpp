@@ -27,6 +27,7 @@ struct Arguments {
   std::string trajectory = "walk";
   std::vector<std::string> formats{"hilti"};
   double duration_s = 60.0;
+  double skip_s = 0.0;
   int seed = 1;
   std::string out;
   std::string config;
@@ -73,6 +74,9 @@ void Declare(CLI::App& app, Arguments& arguments) {
       ->allow_extra_args(false)
       ->capture_default_str();
   app.add_option("--duration", arguments.duration_s, "length [s]")->capture_default_str();
+  app.add_option("--skip", arguments.skip_s,
+                 "leaves out the first seconds; more than 2 starts in motion [s]")
+      ->capture_default_str();
   app.add_option("--seed", arguments.seed, "of clutter, motion and noise")->capture_default_str();
   app.add_option("--out", arguments.out, "directory for the results")->required();
   app.add_option("--config", arguments.config,
@@ -105,6 +109,7 @@ RecordingConfig MakeConfig(const CLI::App& app, const Arguments& arguments,
   if (given("--world")) config.world = arguments.world;
   if (given("--trajectory")) config.motion.style = arguments.trajectory;
   if (given("--duration")) config.motion.duration_s = arguments.duration_s;
+  if (given("--skip")) config.motion.skip_s = arguments.skip_s;
   if (given("--seed")) config.seed = arguments.seed;
   if (given("--point-share")) config.point_share = arguments.point_share;
   if (arguments.no_people) config.people = false;

@@ -39,6 +39,7 @@ struct MotionConfig {
   std::string style = "walk";  ///< one of MotionStyles()
   double duration_s = 60.0;
   double still_s = 2.0;  ///< standing still at the start
+  double skip_s = 0.0;   ///< this much has passed at time 0; beyond still_s: a start in motion
   int seed = 1;          ///< phases of the sway, places of the stops; a Recording sets it
 
   void Describe(ConfigVisitor& visitor);
