@@ -196,6 +196,25 @@ std::vector<CellBlock> MergeOccupied(const FloorPlan& plan) {
   return blocks;
 }
 
+FloorPlan CloseBorders(FloorPlan plan) {
+  std::vector<Cell> closed = plan.cells;
+  const auto touches_free = [&plan](int column, int row) {
+    for (int r = std::max(0, row - 1); r <= std::min(plan.height - 1, row + 1); ++r) {
+      for (int c = std::max(0, column - 1); c <= std::min(plan.width - 1, column + 1); ++c) {
+        if (plan.At(c, r) == Cell::kFree) return true;
+      }
+    }
+    return false;
+  };
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    const int column = static_cast<int>(i) % plan.width;
+    const int row = static_cast<int>(i) / plan.width;
+    if (closed[i] == Cell::kUnknown && touches_free(column, row)) closed[i] = Cell::kOccupied;
+  }
+  plan.cells = std::move(closed);
+  return plan;
+}
+
 World ExtrudeFloorPlan(const FloorPlan& plan, std::uint32_t seed) {
   constexpr double kCeiling = 2.7;
   World world;
@@ -205,7 +224,7 @@ World ExtrudeFloorPlan(const FloorPlan& plan, std::uint32_t seed) {
   MeshBuilder mesh;
   AddFloorAndCeiling(plan, kCeiling, mesh);
   mesh.SetReflectivity(0.6);
-  for (const CellBlock& block : MergeOccupied(plan)) {
+  for (const CellBlock& block : MergeOccupied(CloseBorders(plan))) {
     const Vector2d low = plan.origin + plan.resolution * Vector2d(block.column, block.row);
     const Vector2d size = plan.resolution * Vector2d(block.width, block.height);
     mesh.AddBox(Pose::Identity(), Vector3d(low.x(), low.y(), 0.0),

@@ -15,10 +15,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kPromised = 0.6;   ///< [m] between route and walls
-constexpr double kSpacing = 1.0;    ///< [m] between waypoints
-constexpr double kTurnRadius = 0.7; ///< [m] of the circle to turn back on
-constexpr double kTurnRoom = 1.45;  ///< [m] clearance at its centre
+constexpr double kSpacing = 0.7;     ///< [m] between waypoints
+constexpr double kTurnRadius = 0.7;  ///< [m] of the circle to turn back on
+constexpr double kTurnRoom = 1.45;   ///< [m] clearance at its centre
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr int kOutside = -1;
 
@@ -195,7 +194,7 @@ class RoutePlanner {
     std::vector<int> walk = {Farthest(graph_.From({area.front()}), places)};
     constexpr int kLegs = 12;
     for (int leg = 0; leg < kLegs; ++leg) {
-      if (!AppendLeg(places, random, walk)) break;
+      if (!AppendLeg(places, random, walk) && !AppendLeg(area, random, walk)) break;
     }
     return walk;
   }
@@ -340,29 +339,39 @@ double Length(const std::vector<Vector3d>& route) {
   return length;
 }
 
-}  // namespace
-
-std::vector<Vector3d> PlanRoute(const FloorPlan& plan, std::uint32_t seed) {
-  constexpr double kShortest = 5.0;    // [m]
-  constexpr double kLongEnough = 100.0;  // [m]
+/// Longest route found that keeps `promised` [m] from everything; empty when there is none.
+std::vector<Vector3d> LongestRoute(const FloorPlan& plan, double promised, std::uint32_t seed) {
   const std::vector<double> clearance = Clearance(plan);
   const Coarse coarse = Coarsen(plan, clearance);
   std::vector<Vector3d> best;
   // Smoothing and rounding cut corners, so plan with some reserve; with less if the rooms are small.
   for (const double reserve : {0.4, 0.25, 0.15, 0.08}) {
     Random random({seed});
-    const RoutePlanner planner(coarse.plan, coarse.clearance, kPromised + reserve);
+    const RoutePlanner planner(coarse.plan, coarse.clearance, promised + reserve);
     const std::vector<Vector3d> route = planner.Waypoints(planner.Walk(random));
     const bool keeps_off = route.size() >= 2 && LeastClearance(plan, clearance, route) >=
-                                                    kPromised + 0.7 * plan.resolution;
+                                                    promised + 0.7 * plan.resolution;
     if (keeps_off && Length(route) > Length(best)) best = route;
+    constexpr double kLongEnough = 100.0;  // [m]
     if (Length(best) > kLongEnough) break;
   }
-  if (Length(best) < kShortest) {
-    throw InputError(plan.path + ": no way of " + std::to_string(static_cast<int>(kShortest)) +
-                     " m keeps 0.6 m from all walls");
-  }
   return best;
+}
+
+}  // namespace
+
+std::vector<Vector3d> PlanRoute(const FloorPlan& plan, std::uint32_t seed) {
+  constexpr double kShortest = 5.0;  // [m]
+  constexpr double kWorthIt = 60.0;  // [m]
+  std::vector<Vector3d> route = LongestRoute(plan, 0.6, seed);
+  if (Length(route) < kWorthIt) {
+    std::vector<Vector3d> narrow = LongestRoute(plan, 0.45, seed);
+    if (Length(narrow) > 2.0 * Length(route)) route = std::move(narrow);
+  }
+  if (Length(route) < kShortest) {
+    throw InputError(plan.path + ": no way of 5 m keeps 0.45 m from all walls");
+  }
+  return route;
 }
 
 }  // namespace hv::sim

@@ -40,12 +40,16 @@ struct CellBlock {
 /// Disjoint blocks that cover exactly the occupied cells, greedily large.
 std::vector<CellBlock> MergeOccupied(const FloorPlan& plan);
 
-/// An open route through the largest area in which a robot keeps its distance; it passes through
-/// far places in turn and never turns back on the spot. Throws InputError when there is none of
-/// 5 m.
+/// The plan with unknown cells that touch free ones made occupied: maps made by robots often show
+/// walls only as the edge of what was seen.
+FloorPlan CloseBorders(FloorPlan plan);
+
+/// An open route that keeps 0.6 m from everything but free cells, or 0.45 m where that reaches much
+/// further. It passes through far places in turn and never turns back on the spot. Throws InputError
+/// when there is none of 5 m.
 std::vector<Eigen::Vector3d> PlanRoute(const FloorPlan& plan, std::uint32_t seed);
 
-/// Walls of 2.7 m on every occupied cell, with floor and ceiling, and a route.
+/// Walls of 2.7 m on every occupied cell of CloseBorders(plan), floor, ceiling and a route.
 World ExtrudeFloorPlan(const FloorPlan& plan, std::uint32_t seed);
 
 }  // namespace hv::sim

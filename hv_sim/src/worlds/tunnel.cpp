@@ -212,9 +212,10 @@ World MakeStraightTunnel(std::uint32_t seed) {
   AddPortal(site.mesh, axis, axis.length() - 0.5);
   site.mesh.Undulate(0.005, 0.9, seed);
   // Black with soot, so that a scanner loses the ends and sees nothing but the smooth lining, which
-  // is added last.
+  // is added last and overlaps the ends so that no crack is left.
   site.mesh.LimitReflectivity(0.04);
-  AddLining(site.mesh, axis, kPortal, far, 0.0, seed);
+  constexpr double kOverlap = 0.05;
+  AddLining(site.mesh, axis, kPortal - kOverlap, far + kOverlap, 0.0, seed);
   world.mesh = site.mesh.mesh();
   return world;
 }
