@@ -81,6 +81,13 @@ class OdometryTopics(unittest.TestCase):
         stamps = sorted(by_stamp)
         steps = [later - earlier for earlier, later in zip(stamps, stamps[1:])]
         self.assertEqual(sorted(steps)[len(steps) // 2] // 1000000, 5)
+        for message in self.odometry.messages[1:-1]:
+            stamp = message.header.stamp.to_nsec()
+            nearest = min(stamps, key=lambda other: abs(other - stamp))
+            position = message.pose.pose.position
+            predicted = by_stamp[nearest].pose.pose.position
+            self.assertAlmostEqual(position.x, predicted.x, delta=0.05)
+            self.assertAlmostEqual(position.y, predicted.y, delta=0.05)
 
     def test_clouds_are_registered_in_odom(self):
         self.assertGreater(len(self.clouds), 0.75 * len(self.odometry))

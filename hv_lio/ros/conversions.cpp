@@ -82,7 +82,8 @@ geometry_msgs::Vector3 ToVectorMessage(const Eigen::Vector3d& vector) {
 }
 
 void CopyCovariance(const Matrix6d& covariance, boost::array<double, 36>& values) {
-  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(values.data()) = covariance;
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(values.data()) =
+      0.5 * (covariance + covariance.transpose());
 }
 
 nav_msgs::Odometry ToOdometryMessage(const BodyEstimate& estimate, const std::string& odom_frame,

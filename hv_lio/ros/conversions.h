@@ -28,7 +28,7 @@ Pose FromRos(const geometry_msgs::Transform& transform);
 geometry_msgs::Pose ToPoseMessage(const Pose& pose);
 geometry_msgs::Vector3 ToVectorMessage(const Eigen::Vector3d& vector);
 
-/// Row-major 6 x 6, as geometry_msgs wants it.
+/// Row-major 6 x 6, as geometry_msgs wants it, and exactly symmetric.
 void CopyCovariance(const Matrix6d& covariance, boost::array<double, 36>& values);
 
 /// Pose in `odom_frame`, twist in `body_frame`.
