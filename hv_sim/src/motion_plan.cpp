@@ -16,9 +16,10 @@ constexpr double kStopSeconds = 2.5;
 class Planner {
  public:
   Planner(const MotionConfig& config, const PlanProfile& profile)
-      : profile_(profile), random_(static_cast<std::uint32_t>(config.seed)),
-        wanted_(static_cast<std::size_t>(std::ceil((config.skip_s + config.duration_s) / profile.step_s)) +
-                2 * kSplineReach) {}
+      : profile_(profile), random_(static_cast<std::uint32_t>(config.seed)) {
+    const double steps = std::ceil((config.skip_s + config.duration_s) / profile.step_s);
+    wanted_ = static_cast<std::size_t>(steps) + 2 * kSplineReach;
+  }
 
   bool done() const { return controls_.size() >= wanted_; }
   std::vector<Controls> Take() { return std::move(controls_); }
@@ -119,7 +120,7 @@ class Planner {
 
   PlanProfile profile_;
   std::mt19937 random_;
-  std::size_t wanted_;
+  std::size_t wanted_ = 0;
   std::vector<Controls> controls_;
   double yaw_offset_ = 0.0;
 };
