@@ -1,0 +1,198 @@
+#include "hv_replay/slam_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+#include "hv_core/error.h"
+#include "hv_replay/plot.h"
+
+namespace hv::replay {
+namespace {
+
+/// Every n-th point of a scan goes into the picture of the map.
+constexpr std::size_t kPictureStride = 7;
+
+std::string CreateDirectory(const std::string& path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw InputError(path + ": cannot be created (" + error.message() + ")");
+  return path;
+}
+
+void WriteText(const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text;
+  file.close();
+  if (!file) throw InputError(path + ": cannot be written");
+}
+
+double Quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto index = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index),
+                   values.end());
+  return values[index];
+}
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+/// What is wrong with a bag or the scans is told once a cause, on standard error.
+void Warn(const std::string& line) { std::fprintf(stderr, "hv_slam: %s\n", line.c_str()); }
+
+ImuNeed NeedOf(const lio::SystemConfig& config) {
+  return config.odometry.use_imu ? ImuNeed::kRequired : ImuNeed::kIgnored;
+}
+
+}  // namespace
+
+double ResidentMemoryMb() {
+  long total_pages = 0;
+  long resident_pages = 0;
+  std::FILE* file = std::fopen("/proc/self/statm", "r");
+  if (file == nullptr) return 0.0;
+  const int read = std::fscanf(file, "%ld %ld", &total_pages, &resident_pages);
+  std::fclose(file);
+  const double page_mb = static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
+  return read == 2 ? page_mb * static_cast<double>(resident_pages) : 0.0;
+}
+
+TimingLog::TimingLog(const std::string& path) : file_(std::fopen(path.c_str(), "w")) {
+  if (file_ == nullptr) throw InputError(path + ": cannot be written");
+  std::fputs("stamp,preprocess_ms,update_ms,map_ms,total_ms,voxels,rss_mb\n", file_);
+}
+
+TimingLog::~TimingLog() { std::fclose(file_); }
+
+void TimingLog::Append(const lio::ScanResult& result) {
+  const lio::ScanTiming& timing = result.timing;
+  std::fprintf(file_, "%s,%.4f,%.4f,%.4f,%.4f,%zu,%.2f\n",
+               ToString(result.estimate.stamp).c_str(), timing.preprocess_ms, timing.update_ms,
+               timing.map_ms, timing.total_ms(), result.voxels, ResidentMemoryMb());
+  std::fflush(file_);
+}
+
+SlamRun::SlamRun(const lio::SystemConfig& config, const std::vector<std::string>& bags,
+                 const std::string& out_dir, bool pictures)
+    : config_(config),
+      out_dir_(CreateDirectory(out_dir)),
+      pictures_(pictures),
+      reader_(bags, {config.input.points_topic, config.input.imu_topic}, NeedOf(config)),
+      decoder_(config.points),
+      pipeline_(config.odometry),
+      timing_(out_dir + "/timing.csv") {}
+
+SlamRunSummary SlamRun::Run() {
+  WriteText(out_dir_ + "/config.yaml", ToYaml(config_));
+  BagHandlers handlers;
+  handlers.points = [this](const BagCloud& cloud) {
+    AddCloud(cloud);
+    return true;
+  };
+  handlers.imu = [this](const BagImu& imu) {
+    AddImu(imu);
+    return true;
+  };
+  summary_.error = reader_.Read(handlers, "odometry").error;
+  Drain(true);
+  summary_.counters = pipeline_.counters();
+  summary_.path_length_m = odometry_.PathLength();
+  if (decoder_.time_layout()) summary_.time_layout = decoder_.time_layout()->ToString();
+  WriteResults();
+  return summary_;
+}
+
+void SlamRun::AddCloud(const BagCloud& cloud) {
+  const auto begin = std::chrono::steady_clock::now();
+  DecodedScan decoded = decoder_.Decode(cloud.view);
+  const std::chrono::duration<double, std::milli> decode_time =
+      std::chrono::steady_clock::now() - begin;
+  if (!decoded.error.empty()) {
+    ++summary_.clouds_unusable;
+    if (decoded.error != last_decode_error_) {
+      Warn("cloud at " + ToString(cloud.view.stamp) + ": " + decoded.error);
+    }
+    last_decode_error_ = decoded.error;
+  }
+  pipeline_.AddScan(std::move(decoded.scan), decode_time.count());
+  Drain(false);
+}
+
+void SlamRun::AddImu(const BagImu& imu) {
+  pipeline_.AddImu(imu.sample);
+  Drain(false);
+}
+
+void SlamRun::Drain(bool flush) {
+  while (const auto result = flush ? pipeline_.Flush() : pipeline_.ProcessNext()) Take(*result);
+  for (const std::string& event : pipeline_.TakeEvents()) Warn(event);
+}
+
+void SlamRun::Take(const lio::ScanResult& result) {
+  ++summary_.scans_by_status[lio::ToString(result.status)];
+  const bool tracking = result.status == lio::ScanStatus::kTracking;
+  if (!tracking && result.status != lio::ScanStatus::kImuOnly) return;
+  timing_.Append(result);
+  odometry_.Append(result.estimate.stamp, result.estimate.T_odom_imu);
+  if (!tracking) return;
+  summary_.total_ms.push_back(result.timing.total_ms());
+  summary_.degenerate_scans += result.update.degenerate() ? 1U : 0U;
+  if (pictures_) AddToPicture(result);
+}
+
+void SlamRun::AddToPicture(const lio::ScanResult& result) {
+  const std::vector<Point>& points = *result.deskewed;
+  for (std::size_t i = 0; i < points.size(); i += kPictureStride) {
+    picture_.Add(result.estimate.T_odom_imu *
+                 Eigen::Vector3d(points[i].x, points[i].y, points[i].z));
+  }
+}
+
+void SlamRun::WriteResults() {
+  WriteTum(out_dir_ + "/odometry.tum", odometry_);
+  WriteText(out_dir_ + "/summary.json", SummaryJson(summary_).ToString() + "\n");
+  if (!pictures_ || odometry_.size() < 2 || picture_.cells() == 0) return;
+  PlotTrajectories({{"odometry", odometry_, false}}, "HV-LIO odometry",
+                   out_dir_ + "/trajectory.png");
+  picture_.Save(odometry_, "HV-LIO map", out_dir_ + "/map.png");
+}
+
+JsonObject SummaryJson(const SlamRunSummary& summary) {
+  JsonObject statuses;
+  for (const auto& [status, count] : summary.scans_by_status) statuses.AddCount(status, count);
+  JsonObject timing;
+  timing.Add("mean", Mean(summary.total_ms))
+      .Add("median", Quantile(summary.total_ms, 0.5))
+      .Add("p99", Quantile(summary.total_ms, 0.99))
+      .Add("max", Quantile(summary.total_ms, 1.0));
+  const lio::PipelineCounters& counters = summary.counters;
+  JsonObject input;
+  input.AddCount("scans", counters.scans)
+      .AddCount("clouds_unusable", summary.clouds_unusable)
+      .AddCount("imu_samples", counters.imu_samples)
+      .AddCount("imu_gaps", counters.imu_gaps)
+      .AddCount("imu_out_of_order", counters.imu_out_of_order)
+      .AddCount("imu_invalid", counters.imu_invalid)
+      .AddCount("imu_saturated", counters.imu_saturated)
+      .AddCount("clock_jumps", counters.clock_jumps)
+      .AddCount("resets", counters.resets);
+  JsonObject json;
+  json.Add("scans", statuses)
+      .Add("path_length_m", summary.path_length_m)
+      .AddCount("degenerate_scans", summary.degenerate_scans)
+      .Add("scan_ms", timing)
+      .Add("input", input)
+      .Add("point_time", summary.time_layout)
+      .Add("resident_mb", ResidentMemoryMb())
+      .Add("error", summary.error);
+  return json;
+}
+
+}  // namespace hv::replay

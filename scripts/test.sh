@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Sets up and builds HV-LIOM, then runs all its tests. Ends with 'N passed, N failed'.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=${HV_BUILD_DIR:-$root/build}
+HV_BUILD_DIR=$build "$root/scripts/setup.sh" "$@"
+
+export PATH="/usr/bin:$PATH"
+set +u
+# shellcheck disable=SC1091
+source "$build/devel/setup.bash"
+set -u
+rm -rf "$build/test_results"
+log=$build/ctest.log
+status=0
+ctest --test-dir "$build" --output-on-failure -j2 2>&1 | tee "$log" || status=$?
+
+# One ctest entry is a whole test program; count the single tests from their result files.
+/usr/bin/python3 - "$build/test_results" <<'PYTHON'
+import pathlib
+import sys
+import xml.etree.ElementTree as tree
+
+passed = failed = 0
+for path in pathlib.Path(sys.argv[1]).rglob("*.xml"):
+    for case in tree.parse(path).getroot().iter("testcase"):
+        bad = any(child.tag in ("failure", "error") for child in case)
+        failed += bad
+        passed += not bad
+print(f"{passed} passed, {failed} failed")
+sys.exit(failed > 0 or passed == 0)
+PYTHON
+exit "$status"
