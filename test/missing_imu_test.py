@@ -15,7 +15,7 @@ from recording import POINTS, Collector, Diagnostics, Player, wait_until  # noqa
 class MissingImu(unittest.TestCase):
 
     def test_warning_names_the_topic_and_the_alternative(self):
-        log = Collector("/rosout_agg", Log)
+        log = Collector("/rosout", Log)
         diagnostics = Diagnostics()
         player = Player(rospy.get_param("~recording"), imu="/other_imu")
         self.assertTrue(player.wait_for_node((POINTS,)))

@@ -1,3 +1,5 @@
+#include <iostream>
+
 #include <ros/ros.h>
 
 #include "hv_core/error.h"
@@ -9,7 +11,8 @@ int main(int argc, char** argv) {
     const hv::lio::OdometryNode node(ros::NodeHandle(), ros::NodeHandle("~"));
     ros::spin();
   } catch (const hv::InputError& error) {
-    ROS_FATAL_STREAM("hv_lio cannot start:\n" << error.what());
+    // The last node handle is gone here and has taken rosconsole with it.
+    std::cerr << "hv_lio cannot start:\n" << error.what() << std::endl;
     return 1;
   }
   return 0;
