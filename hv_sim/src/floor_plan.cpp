@@ -1,12 +1,12 @@
 #include "hv_sim/floor_plan.h"
 
+#include <yaml-cpp/yaml.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-
-#include <yaml-cpp/yaml.h>
 
 #include "hv_core/config.h"
 #include "hv_core/error.h"

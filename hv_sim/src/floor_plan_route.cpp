@@ -309,9 +309,9 @@ Coarse Coarsen(const FloorPlan& fine, const std::vector<double>& clearance) {
     for (int column = 0; column < coarse.plan.width; ++column) {
       const int center_row = row * factor + factor / 2;
       const int center_column = column * factor + factor / 2;
-      const auto index = static_cast<std::size_t>(center_row) *
-                             static_cast<std::size_t>(fine.width) +
-                         static_cast<std::size_t>(center_column);
+      const auto index =
+          static_cast<std::size_t>(center_row) * static_cast<std::size_t>(fine.width) +
+          static_cast<std::size_t>(center_column);
       coarse.clearance.push_back(clearance[index]);
     }
   }
@@ -344,7 +344,8 @@ std::vector<Vector3d> LongestRoute(const FloorPlan& plan, double promised, std::
   const std::vector<double> clearance = Clearance(plan);
   const Coarse coarse = Coarsen(plan, clearance);
   std::vector<Vector3d> best;
-  // Smoothing and rounding cut corners, so plan with some reserve; with less if the rooms are small.
+  // Smoothing and rounding cut corners, so plan with some reserve; with less if the rooms are
+  // small.
   for (const double reserve : {0.4, 0.25, 0.15, 0.08}) {
     Random random({seed});
     const RoutePlanner planner(coarse.plan, coarse.clearance, promised + reserve);

@@ -1,12 +1,12 @@
 #include "hv_sim/lidar.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "hv_core/error.h"
 #include "hv_core/so3.h"
@@ -183,8 +183,8 @@ bool LidarSimulator::Impl::Detect(const Echo& echo, Random& random) const {
   if (options.dropout > 0.0 && random.Chance(options.dropout)) return false;
   const double limit = model.range_at_10_percent;
   const double signal = echo.energy * limit * limit / 0.1;
-  constexpr double kSpeckle = 0.2;
-  return signal > (options.noise ? std::max(0.0, 1.0 + kSpeckle * random.Gauss()) : 1.0);
+  constexpr double kSpeckle = 0.35;
+  return signal > (options.noise ? random.Uniform(1.0 - kSpeckle, 1.0 + kSpeckle) : 1.0);
 }
 
 std::vector<Point> LidarSimulator::Impl::Column(
@@ -227,8 +227,7 @@ LidarSimulator::LidarSimulator(const World& world, LidarModel model, LidarOption
 
 LidarSimulator::~LidarSimulator() = default;
 
-Scan LidarSimulator::Sweep(double start_s,
-                           const std::function<Pose(double)>& T_world_lidar) const {
+Scan LidarSimulator::Sweep(double start_s, const std::function<Pose(double)>& T_world_lidar) const {
   const int columns = impl_->model.columns;
   std::vector<std::vector<Point>> parts(static_cast<std::size_t>(columns));
   tbb::parallel_for(tbb::blocked_range<int>(0, columns, 16), [&](const auto& range) {

@@ -125,7 +125,8 @@ void MeshBuilder::AddFrustum(const Vector3d& from, const Vector3d& to, double fr
   AddPatch(1, sides, [&](double s, double t) -> Vector3d {
     return from + s * (to - from) + (from_radius + s * (to_radius - from_radius)) * ring(t);
   });
-  AddPatch(1, sides, [&](double s, double t) -> Vector3d { return from + s * from_radius * ring(t); });
+  AddPatch(1, sides,
+           [&](double s, double t) -> Vector3d { return from + s * from_radius * ring(t); });
   AddPatch(1, sides, [&](double s, double t) -> Vector3d { return to + s * to_radius * ring(t); });
 }
 

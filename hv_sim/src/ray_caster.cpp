@@ -1,11 +1,11 @@
 #include "hv_sim/ray_caster.h"
 
+#include <embree3/rtcore.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
-
-#include <embree3/rtcore.h>
 
 namespace hv::sim {
 namespace {

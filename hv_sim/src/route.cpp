@@ -15,8 +15,8 @@ void AppendSegment(const Vector3d& to, double step, std::vector<Vector3d>& point
 }
 
 /// Replaces the corner at `at` by an arc; `points` is empty or ends before the corner.
-void AppendCorner(const Vector3d& previous, const Vector3d& at, const Vector3d& next,
-                  double radius, double step, std::vector<Vector3d>& points) {
+void AppendCorner(const Vector3d& previous, const Vector3d& at, const Vector3d& next, double radius,
+                  double step, std::vector<Vector3d>& points) {
   const Vector3d in = (at - previous).normalized();
   const Vector3d out = (next - at).normalized();
   const double turn = std::acos(std::clamp(in.dot(out), -1.0, 1.0));
@@ -38,7 +38,8 @@ void AppendCorner(const Vector3d& previous, const Vector3d& at, const Vector3d& 
   const int pieces = std::max(2, static_cast<int>(std::ceil(arc_radius * turn / step)));
   for (int i = 1; i <= pieces; ++i) {
     const double angle = turn * i / pieces;
-    points.emplace_back(first + arc_radius * (std::sin(angle) * in + (1.0 - std::cos(angle)) * side));
+    points.emplace_back(first +
+                        arc_radius * (std::sin(angle) * in + (1.0 - std::cos(angle)) * side));
   }
 }
 

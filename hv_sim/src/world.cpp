@@ -48,8 +48,8 @@ bool IsYamlPath(const std::string& name) {
 }
 
 [[noreturn]] void ThrowUnknown(const std::string& name) {
-  const Entry& nearest = *std::min_element(
-      kWorlds.begin(), kWorlds.end(), [&name](const Entry& a, const Entry& b) {
+  const Entry& nearest =
+      *std::min_element(kWorlds.begin(), kWorlds.end(), [&name](const Entry& a, const Entry& b) {
         return EditDistance(name, a.name) < EditDistance(name, b.name);
       });
   throw InputError("unknown world '" + name + "', did you mean '" + nearest.name +

@@ -1,15 +1,17 @@
 #include "hv_sim/world.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string>
 
-#include <gtest/gtest.h>
-
 #include "hv_core/error.h"
 #include "hv_sim/floor_plan.h"
+#include "hv_sim/lidar.h"
 #include "hv_sim/mesh_builder.h"
 #include "hv_sim/ray_caster.h"
 #include "hv_sim/route.h"
@@ -130,6 +132,19 @@ TEST(World, StraightTunnelIsTheSameAllAlongItsMiddle) {
   constexpr std::size_t kDirections = 16;
   for (std::size_t i = kDirections; i < hits.size(); ++i) {
     EXPECT_NEAR(hits[i].range, hits[i % kDirections].range, 1e-4F);
+  }
+}
+
+TEST(World, StraightTunnelHidesItsEndsFromItsMiddle) {
+  const LidarSimulator lidar(MakeWorld("tunnel_straight", 1), PandarXt32(), {}, 1);
+  for (const double x : {90.0, 115.0, 140.0}) {
+    const Pose pose(Eigen::Translation3d(x, 0.2, 1.2));
+    const Scan scan = lidar.Sweep(0.0, [&pose](double) { return pose; });
+    ASSERT_GT(scan.points.size(), 50000U);
+    for (const Point& point : scan.points) {
+      ASSERT_GT(x + static_cast<double>(point.x), 30.1);
+      ASSERT_LT(x + static_cast<double>(point.x), 199.9);
+    }
   }
 }
 

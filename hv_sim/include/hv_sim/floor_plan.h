@@ -1,10 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <string>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "hv_sim/world.h"
 
@@ -17,7 +16,7 @@ struct FloorPlan {
   std::string path;  ///< of the YAML file, for messages
   int width = 0;
   int height = 0;
-  double resolution = 0.05;  ///< edge of a cell [m]
+  double resolution = 0.05;                          ///< edge of a cell [m]
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();  ///< south-western corner [m]
   std::vector<Cell> cells;
 
@@ -45,8 +44,8 @@ std::vector<CellBlock> MergeOccupied(const FloorPlan& plan);
 FloorPlan CloseBorders(FloorPlan plan);
 
 /// An open route that keeps 0.6 m from everything but free cells, or 0.45 m where that reaches much
-/// further. It passes through far places in turn and never turns back on the spot. Throws InputError
-/// when there is none of 5 m.
+/// further. It passes through far places in turn and never turns back on the spot. Throws
+/// InputError when there is none of 5 m.
 std::vector<Eigen::Vector3d> PlanRoute(const FloorPlan& plan, std::uint32_t seed);
 
 /// Walls of 2.7 m on every occupied cell of CloseBorders(plan), floor, ceiling and a route.

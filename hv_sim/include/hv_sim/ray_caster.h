@@ -1,10 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <limits>
 #include <memory>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "hv_sim/world.h"
 

@@ -77,8 +77,8 @@ void AddDoorLeaf(MeshBuilder& mesh, const Vector3d& hinge, double yaw, double wi
                    T_world_hinge * Vector3d(width - 0.08, 0.07, 1.05), 0.02, 6);
 }
 
-std::vector<Opening> Windows(double length, double first, double pitch, double width,
-                             double bottom, double top) {
+std::vector<Opening> Windows(double length, double first, double pitch, double width, double bottom,
+                             double top) {
   std::vector<Opening> windows;
   for (double from = first; from + width < length - 0.3; from += pitch) {
     windows.push_back({from, from + width, bottom, top});

@@ -26,10 +26,9 @@ Vector3d OnGround(double x, double y) { return {x, y, Height(x, y)}; }
 
 /// Paths between four blocks; the south-eastern one is walked around twice.
 std::vector<Vector3d> Route() {
-  const std::vector<Vector3d> corners = {{-70.0, -70.0, 0.0}, {70.0, -70.0, 0.0},
-                                         {70.0, 0.0, 0.0},    {0.0, 0.0, 0.0},
-                                         {0.0, -70.0, 0.0},   {70.0, -70.0, 0.0},
-                                         {70.0, 70.0, 0.0},   {-70.0, 70.0, 0.0}};
+  const std::vector<Vector3d> corners = {
+      {-70.0, -70.0, 0.0}, {70.0, -70.0, 0.0}, {70.0, 0.0, 0.0},  {0.0, 0.0, 0.0},
+      {0.0, -70.0, 0.0},   {70.0, -70.0, 0.0}, {70.0, 70.0, 0.0}, {-70.0, 70.0, 0.0}};
   std::vector<Vector3d> route = SampleRoute(corners, true, 4.0, 1.0);
   route.pop_back();  // the first point again
   for (Vector3d& point : route) point.z() = Height(point.x(), point.y());
@@ -77,8 +76,8 @@ void AddHouses(Site& site) {
 
 /// Rows of trees, lamps and signs on both sides of the paths, cars along one of them.
 void AddAlleys(Site& site) {
-  const std::vector<Prop> props = {{AddTree, 0.9},   {AddTree, 0.9},    {AddStreetLamp, 0.25},
-                                   {AddBush, 0.8},   {AddBench, 0.95},  {AddSign, 0.35},
+  const std::vector<Prop> props = {{AddTree, 0.9},     {AddTree, 0.9},    {AddStreetLamp, 0.25},
+                                   {AddBush, 0.8},     {AddBench, 0.95},  {AddSign, 0.35},
                                    {AddBollard, 0.15}, {AddConifer, 1.2}, {AddBoulder, 0.7}};
   for (const double path : {-70.0, 0.0, 70.0}) {
     for (const double side : {-3.4, 3.4}) {
@@ -163,8 +162,9 @@ World MakeCampus(std::uint32_t seed) {
   AddLines(site);
   site.mesh.Undulate(0.006, 1.3, seed);
   world.mesh = site.mesh.mesh();
-  world.people = {Walkway({-60.0, -70.0}, {20.0, -70.0}, 1.3), Walkway({70.0, -60.0}, {70.0, 40.0}, 1.1),
-                  Walkway({5.0, 0.0}, {65.0, 0.0}, 1.2), Walkway({0.0, -60.0}, {0.0, -5.0}, 0.9),
+  world.people = {Walkway({-60.0, -70.0}, {20.0, -70.0}, 1.3),
+                  Walkway({70.0, -60.0}, {70.0, 40.0}, 1.1), Walkway({5.0, 0.0}, {65.0, 0.0}, 1.2),
+                  Walkway({0.0, -60.0}, {0.0, -5.0}, 0.9),
                   Walkway({-60.0, 70.0}, {50.0, 70.0}, 1.4)};
   return world;
 }

@@ -24,14 +24,14 @@ constexpr double kLanding = 28.0;
 
 std::vector<Vector3d> Route() {
   constexpr double kRamp = 23.5;
-  return {{7.0, 6.0, 0.0},          {37.0, 6.0, 0.0},        {37.0, 12.0, 0.0},
-          {13.0, 12.0, 0.0},        {13.0, 18.0, 0.0},       {5.0, 18.0, 0.0},
-          {5.0, kRamp, 0.0},        {kRampFrom, kRamp, 0.0}, {kRampTo, kRamp, kStorey},
-          {39.0, kRamp, kStorey},   {39.0, 18.0, kStorey},   {25.0, 18.0, kStorey},
-          {25.0, 6.0, kStorey},     {7.0, 6.0, kStorey},     {7.0, 12.0, kStorey},
-          {13.0, 12.0, kStorey},    {13.0, 18.0, kStorey},   {39.0, 18.0, kStorey},
-          {39.0, kRamp, kStorey},   {kRampTo, kRamp, kStorey}, {kRampFrom, kRamp, 0.0},
-          {5.0, kRamp, 0.0},        {7.0, 19.0, 0.0}};
+  return {{7.0, 6.0, 0.0},        {37.0, 6.0, 0.0},          {37.0, 12.0, 0.0},
+          {13.0, 12.0, 0.0},      {13.0, 18.0, 0.0},         {5.0, 18.0, 0.0},
+          {5.0, kRamp, 0.0},      {kRampFrom, kRamp, 0.0},   {kRampTo, kRamp, kStorey},
+          {39.0, kRamp, kStorey}, {39.0, 18.0, kStorey},     {25.0, 18.0, kStorey},
+          {25.0, 6.0, kStorey},   {7.0, 6.0, kStorey},       {7.0, 12.0, kStorey},
+          {13.0, 12.0, kStorey},  {13.0, 18.0, kStorey},     {39.0, 18.0, kStorey},
+          {39.0, kRamp, kStorey}, {kRampTo, kRamp, kStorey}, {kRampFrom, kRamp, 0.0},
+          {5.0, kRamp, 0.0},      {7.0, 19.0, 0.0}};
 }
 
 /// Level inside the site, uneven outside.
@@ -126,23 +126,32 @@ void AddPartialWalls(Site& site) {
   const double ground = kStorey - kSlab;
   AddWall(mesh, {{0.0, 0.2}, {24.0, 0.2}, Windows(24.0, 1.5, 4.0, 2.0), 0.0, ground, 0.24});
   AddWall(mesh, {{0.2, 0.0}, {0.2, 15.0}, Windows(15.0, 2.0, 4.0, 1.5), 0.0, ground, 0.24});
-  AddWall(mesh, {{43.8, 4.0}, {43.8, kDepth}, Windows(16.0, 1.0, 5.0, 3.0, 1.2), 0.0, ground, 0.24});
+  AddWall(mesh,
+          {{43.8, 4.0}, {43.8, kDepth}, Windows(16.0, 1.0, 5.0, 3.0, 1.2), 0.0, ground, 0.24});
   AddWall(mesh, {{28.0, 0.0}, {28.0, 4.2}, {{1.0, 2.0, 0.0, 2.1}}, 0.0, ground, 0.2});
-  AddWall(mesh, {{20.0, 14.5}, {32.0, 14.5}, {{2.0, 3.2, 0.0, 2.1}, {7.0, 9.0, 0.9, 2.2}}, 0.0,
-                 ground, 0.2});
+  AddWall(
+      mesh,
+      {{20.0, 14.5}, {32.0, 14.5}, {{2.0, 3.2, 0.0, 2.1}, {7.0, 9.0, 0.9, 2.2}}, 0.0, ground, 0.2});
   AddWall(mesh, {{16.0, 16.5}, {16.0, kDepth}, {}, 0.0, 1.4, 0.2});
   AddWall(mesh, {{0.0, 0.2}, {16.0, 0.2}, Windows(16.0, 1.5, 4.0, 2.0), kStorey, 2.6, 0.24});
   AddWall(mesh, {{0.2, 0.0}, {0.2, 12.0}, Windows(12.0, 2.0, 4.0, 1.5), kStorey, 1.9, 0.24});
-  AddWall(mesh, {{30.0, 2.0}, {30.0, 14.0}, {{3.0, 4.2, 0.0, 2.1}, {7.0, 8.5, 0.9, 2.0}}, kStorey,
-                 2.4, 0.2});
+  AddWall(
+      mesh,
+      {{30.0, 2.0}, {30.0, 14.0}, {{3.0, 4.2, 0.0, 2.1}, {7.0, 8.5, 0.9, 2.0}}, kStorey, 2.4, 0.2});
   AddWall(mesh, {{30.0, 8.0}, {38.0, 8.0}, {{2.0, 3.2, 0.0, 2.1}}, kStorey, 1.3, 0.2});
   mesh.SetReflectivity(0.5);
-  AddRailing(mesh, {{16.0, 0.2, kStorey}, {kLength - 0.2, 0.2, kStorey},
-                    {kLength - 0.2, kLanding - 0.2, kStorey}, {kRampTo + 0.5, kLanding - 0.2, kStorey}});
-  AddRailing(mesh, {{0.2, 12.0, kStorey}, {0.2, kDepth - 0.2, kStorey},
-                    {kRampTo - 0.5, kDepth - 0.2, kStorey}});
-  AddRailing(mesh, {{17.8, 7.8, kStorey}, {22.2, 7.8, kStorey}, {22.2, 11.2, kStorey},
-                    {17.8, 11.2, kStorey}, {17.8, 7.8, kStorey}});
+  AddRailing(mesh, {{16.0, 0.2, kStorey},
+                    {kLength - 0.2, 0.2, kStorey},
+                    {kLength - 0.2, kLanding - 0.2, kStorey},
+                    {kRampTo + 0.5, kLanding - 0.2, kStorey}});
+  AddRailing(
+      mesh,
+      {{0.2, 12.0, kStorey}, {0.2, kDepth - 0.2, kStorey}, {kRampTo - 0.5, kDepth - 0.2, kStorey}});
+  AddRailing(mesh, {{17.8, 7.8, kStorey},
+                    {22.2, 7.8, kStorey},
+                    {22.2, 11.2, kStorey},
+                    {17.8, 11.2, kStorey},
+                    {17.8, 7.8, kStorey}});
 }
 
 /// Keeps clutter out of walls by reserving discs along them.
@@ -172,11 +181,13 @@ void AddFormwork(Site& site) {
   mesh.SetReflectivity(0.5);
   mesh.AddBox(Pose::Identity(), Vector3d(0.5, 0.5, deck), Vector3d(15.5, 8.5, deck + 0.03));
   for (double x = 1.0; x < 15.5; x += 1.6) {
-    mesh.AddBox(Pose::Identity(), Vector3d(x - 0.04, 0.5, deck - 0.2), Vector3d(x + 0.04, 8.5, deck));
+    mesh.AddBox(Pose::Identity(), Vector3d(x - 0.04, 0.5, deck - 0.2),
+                Vector3d(x + 0.04, 8.5, deck));
     for (const double y : {1.2, 4.0, 8.0}) {
       const Vector3d foot(x + site.random.Uniform(-0.1, 0.1), y, kStorey);
       if (!site.Place({[](MeshBuilder& at_mesh, const Pose& at, Random&) {
-                         at_mesh.AddCylinder(at.translation(), at * Vector3d(0.0, 0.0, 2.8), 0.04, 8);
+                         at_mesh.AddCylinder(at.translation(), at * Vector3d(0.0, 0.0, 2.8), 0.04,
+                                             8);
                        },
                        0.1},
                       foot, 0.0)) {
@@ -190,8 +201,8 @@ void AddCables(Site& site) {
   site.mesh.SetReflectivity(0.3);
   for (int i = 0; i < 14; ++i) {
     const Vector3d from(site.random.Uniform(1.0, 43.0), site.random.Uniform(1.0, 19.0), 3.2);
-    const Vector3d to = from + Vector3d(site.random.Uniform(-6.0, 6.0),
-                                        site.random.Uniform(-5.0, 5.0), 0.0);
+    const Vector3d to =
+        from + Vector3d(site.random.Uniform(-6.0, 6.0), site.random.Uniform(-5.0, 5.0), 0.0);
     site.mesh.AddCable(from, to, site.random.Uniform(0.1, 0.45), 0.015);
   }
 }
@@ -213,8 +224,11 @@ void AddSurroundings(Site& site, std::uint32_t seed) {
   AddScaffold(site.mesh, Upright({0.0, -1.5, 0.0}), 24.0, 3);
   AddScaffold(site.mesh, Upright({45.5, 4.0, 0.0}, 0.5 * M_PI), 16.0, 2);
   AddCrane(site.mesh, {-6.0, 10.0, 0.0});
-  const std::vector<Prop> heavy = {{AddBigMound, 2.5}, {AddContainer, 3.4}, {AddMound, 0.9},
-                                   {AddPipeStack, 1.2}, {AddCableDrum, 0.7}};
+  const std::vector<Prop> heavy = {{AddBigMound, 2.5},
+                                   {AddContainer, 3.4},
+                                   {AddMound, 0.9},
+                                   {AddPipeStack, 1.2},
+                                   {AddCableDrum, 0.7}};
   for (int i = 0; i < 120; ++i) {
     const double x = site.random.Uniform(-15.0, 58.0);
     const double y = site.random.Uniform(-15.0, 42.0);
@@ -257,7 +271,8 @@ World MakeConstruction(std::uint32_t seed) {
       {{{9.0, 5.2, 0.0}, {35.0, 5.2, 0.0}, {35.0, 6.8, 0.0}, {9.0, 6.8, 0.0}}, 1.2, 0.0},
       {{{15.0, 11.3, 0.0}, {35.0, 11.3, 0.0}, {35.0, 12.7, 0.0}, {15.0, 12.7, 0.0}}, 1.0, 12.0},
       {{{15.0, 17.3, kStorey}, {37.0, 17.3, kStorey}, {37.0, 18.7, kStorey}, {15.0, 18.7, kStorey}},
-       1.1, 4.0}};
+       1.1,
+       4.0}};
   return world;
 }
 

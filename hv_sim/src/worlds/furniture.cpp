@@ -1,5 +1,6 @@
 #include "furniture.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace hv::sim {
@@ -23,6 +24,17 @@ void AddLegs(MeshBuilder& mesh, const Pose& at, double half_x, double half_y, do
   }
 }
 
+/// A carton turned anyhow, sagging a little to one side.
+void AddCarton(MeshBuilder& mesh, const Pose& at, double height, Random& random) {
+  mesh.SetReflectivity(random.Uniform(0.4, 0.7));
+  const Vector3d size(random.Uniform(0.2, 0.32), random.Uniform(0.2, 0.35), height);
+  const Pose tilted =
+      MakePose(RotationFromRpy(random.Uniform(-0.05, 0.05), random.Uniform(-0.05, 0.05),
+                               random.Uniform(-M_PI, M_PI)),
+               Vector3d(0.0, 0.0, 0.5 * height));
+  mesh.AddBox(at * tilted, size);
+}
+
 }  // namespace
 
 void AddDesk(MeshBuilder& mesh, const Pose& at, Random& random) {
@@ -31,8 +43,8 @@ void AddDesk(MeshBuilder& mesh, const Pose& at, Random& random) {
   AddLegs(mesh, at, 0.3, 0.65, 0.71);
   Block(mesh, at, {-0.3, 0.25, 0.05}, {0.25, 0.62, 0.6});
   mesh.SetReflectivity(0.15);
-  const Pose screen = at * Upright({-0.2, random.Uniform(-0.4, 0.1), 0.95},
-                                   random.Uniform(-0.4, 0.4));
+  const Pose screen =
+      at * Upright({-0.2, random.Uniform(-0.4, 0.1), 0.95}, random.Uniform(-0.4, 0.4));
   mesh.AddBox(screen, Vector3d(0.03, 0.52, 0.32));
   mesh.AddCylinder(screen.translation() - 0.2 * Vector3d::UnitZ(), screen.translation(), 0.03, 8);
   mesh.SetReflectivity(0.8);
@@ -73,8 +85,9 @@ void AddShelf(MeshBuilder& mesh, const Pose& at, Random& random) {
     while (y < 0.4) {
       const double width = random.Uniform(0.05, 0.25);
       mesh.SetReflectivity(random.Uniform(0.2, 0.9));
-      Block(mesh, at, {-0.14, y, z + 0.02},
-            {random.Uniform(-0.02, 0.14), std::min(0.46, y + width), z + random.Uniform(0.15, 0.32)});
+      Block(
+          mesh, at, {-0.14, y, z + 0.02},
+          {random.Uniform(-0.02, 0.14), std::min(0.46, y + width), z + random.Uniform(0.15, 0.32)});
       y += width + (random.Chance(0.3) ? 0.15 : 0.005);
     }
   }
@@ -106,24 +119,18 @@ void AddBin(MeshBuilder& mesh, const Pose& at, Random& random) {
 }
 
 void AddCarton(MeshBuilder& mesh, const Pose& at, Random& random) {
-  mesh.SetReflectivity(random.Uniform(0.4, 0.7));
-  const Vector3d size(random.Uniform(0.2, 0.32), random.Uniform(0.2, 0.35),
-                      random.Uniform(0.15, 0.4));
-  const Pose tilted = MakePose(RotationFromRpy(random.Uniform(-0.1, 0.1),
-                                               random.Uniform(-0.1, 0.1),
-                                               random.Uniform(-M_PI, M_PI)),
-                               Vector3d(0.0, 0.0, 0.5 * size.z()));
-  mesh.AddBox(at * tilted, size);
+  const double height = random.Uniform(0.15, 0.4);
+  AddCarton(mesh, at, height, random);
 }
 
 void AddCartonStack(MeshBuilder& mesh, const Pose& at, Random& random) {
   const int count = 2 + static_cast<int>(random.Bits() % 4);
-  double height = 0.0;
+  double top = 0.0;
   for (int i = 0; i < count; ++i) {
-    AddCarton(mesh, at * Upright({random.Uniform(-0.06, 0.06), random.Uniform(-0.06, 0.06),
-                                  height}),
-              random);
-    height += 0.28;
+    const double height = random.Uniform(0.2, 0.35);
+    const Vector3d shift(random.Uniform(-0.06, 0.06), random.Uniform(-0.06, 0.06), top);
+    AddCarton(mesh, at * Upright(shift), height, random);
+    top += height - 0.01;
   }
 }
 
@@ -159,18 +166,19 @@ void AddExtinguisher(MeshBuilder& mesh, const Pose& at, Random& random) {
 }
 
 std::vector<Prop> WallFurniture() {
-  return {{AddDesk, 0.8},   {AddShelf, 0.55},    {AddShelf, 0.55}, {AddCabinet, 0.47},
-          {AddPlant, 0.4},  {AddCartonStack, 0.3}, {AddCoatStand, 0.35}};
+  return {{AddDesk, 0.8},  {AddShelf, 0.55},      {AddShelf, 0.55},    {AddCabinet, 0.47},
+          {AddPlant, 0.4}, {AddCartonStack, 0.3}, {AddCoatStand, 0.35}};
 }
 
 std::vector<Prop> LooseFurniture() {
-  return {{AddTable, 0.97}, {AddDesk, 0.8},  {AddChair, 0.35}, {AddChair, 0.35}, {AddChair, 0.35},
-          {AddBin, 0.2},    {AddCarton, 0.3}, {AddPlant, 0.4},  {AddCartonStack, 0.3}};
+  return {{AddTable, 0.97}, {AddDesk, 0.8},   {AddChair, 0.35},
+          {AddChair, 0.35}, {AddChair, 0.35}, {AddBin, 0.2},
+          {AddCarton, 0.3}, {AddPlant, 0.4},  {AddCartonStack, 0.3}};
 }
 
 std::vector<Prop> CorridorFurniture() {
-  return {{AddExtinguisher, 0.15}, {AddBin, 0.17},     {AddCarton, 0.25}, {AddCabinet, 0.44},
-          {AddPlant, 0.36},        {AddCoatStand, 0.3}};
+  return {{AddExtinguisher, 0.15}, {AddBin, 0.17},   {AddCarton, 0.25},
+          {AddCabinet, 0.44},      {AddPlant, 0.36}, {AddCoatStand, 0.3}};
 }
 
 }  // namespace hv::sim

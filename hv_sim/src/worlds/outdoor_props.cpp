@@ -26,10 +26,9 @@ void AddWheels(MeshBuilder& mesh, const Pose& at, double half_x, double half_y) 
 
 /// The four outer walls of one storey.
 void AddStorey(MeshBuilder& mesh, const Pose& at, const Vector2d& half, int floor) {
-  const std::array<Vector2d, 4> corners = {Vector2d(-half.x(), -half.y()),
-                                           Vector2d(half.x(), -half.y()),
-                                           Vector2d(half.x(), half.y()),
-                                           Vector2d(-half.x(), half.y())};
+  const std::array<Vector2d, 4> corners = {
+      Vector2d(-half.x(), -half.y()), Vector2d(half.x(), -half.y()), Vector2d(half.x(), half.y()),
+      Vector2d(-half.x(), half.y())};
   const auto world = [&at](const Vector2d& corner) -> Vector2d {
     return (at * Vector3d(corner.x(), corner.y(), 0.0)).head<2>();
   };
@@ -71,7 +70,8 @@ void AddTree(MeshBuilder& mesh, const Pose& at, Random& random) {
     const double turn = random.Uniform(-M_PI, M_PI);
     const Vector3d reach(crown * std::cos(turn), crown * std::sin(turn), random.Uniform(0.6, 2.0));
     const Vector3d tip = fork + 0.7 * reach;
-    mesh.AddFrustum(fork - random.Uniform(0.0, 0.7) * Vector3d::UnitZ(), tip, 0.35 * trunk, 0.02, 5);
+    mesh.AddFrustum(fork - random.Uniform(0.0, 0.7) * Vector3d::UnitZ(), tip, 0.35 * trunk, 0.02,
+                    5);
     mesh.SetReflectivity(0.5);
     mesh.AddLeaves(tip, {0.5 * crown, 0.5 * crown, 0.45 * crown}, 70, 0.22, random);
     mesh.SetReflectivity(0.3);
@@ -134,7 +134,8 @@ void AddBench(MeshBuilder& mesh, const Pose& at, Random& random) {
   for (const double y : {-0.7, 0.7}) {
     mesh.AddBox(at, Vector3d(-0.25, y - 0.04, -0.2), Vector3d(0.25, y + 0.04, 0.43));
   }
-  if (random.Chance(0.3)) mesh.AddFrustum(at * Vector3d(0.0, 1.1, -0.1), at * Vector3d(0.0, 1.1, 0.8), 0.2, 0.24);
+  if (random.Chance(0.3))
+    mesh.AddFrustum(at * Vector3d(0.0, 1.1, -0.1), at * Vector3d(0.0, 1.1, 0.8), 0.2, 0.24);
 }
 
 void AddCar(MeshBuilder& mesh, const Pose& at, Random& random) {
@@ -143,7 +144,8 @@ void AddCar(MeshBuilder& mesh, const Pose& at, Random& random) {
   mesh.AddBox(at, Vector3d(-2.1, -0.85, 0.28), Vector3d(2.1, 0.85, 0.8));
   mesh.AddEllipsoid(at * Upright({-0.15, 0.0, 0.8}), {1.6, 0.78, 0.68}, 0.0, 1);
   mesh.AddEllipsoid(at * Upright({1.5, 0.0, 0.75}), {0.75, 0.82, 0.2}, 0.0, 1);
-  for (const double y : {-0.95, 0.95}) mesh.AddBox(at * Upright({0.65, y, 0.95}), Vector3d(0.1, 0.18, 0.12));
+  for (const double y : {-0.95, 0.95})
+    mesh.AddBox(at * Upright({0.65, y, 0.95}), Vector3d(0.1, 0.18, 0.12));
   AddWheels(mesh, at, 1.3, 0.8);
 }
 
@@ -160,11 +162,14 @@ void AddHouse(MeshBuilder& mesh, const Pose& at, double length, double depth, in
   for (int floor = 0; floor < floors; ++floor) AddStorey(mesh, at, half, floor);
   const double top = kStorey * floors;
   // Foundation below uneven ground, panes set back behind the windows, and eaves.
-  mesh.AddBox(at, Vector3d(-half.x() - 0.15, -half.y() - 0.15, -2.5), Vector3d(half.x() + 0.15, half.y() + 0.15, 0.0));
+  mesh.AddBox(at, Vector3d(-half.x() - 0.15, -half.y() - 0.15, -2.5),
+              Vector3d(half.x() + 0.15, half.y() + 0.15, 0.0));
   mesh.SetReflectivity(0.12);
-  mesh.AddBox(at, Vector3d(-half.x() + 0.5, -half.y() + 0.5, 0.0), Vector3d(half.x() - 0.5, half.y() - 0.5, top));
+  mesh.AddBox(at, Vector3d(-half.x() + 0.5, -half.y() + 0.5, 0.0),
+              Vector3d(half.x() - 0.5, half.y() - 0.5, top));
   mesh.SetReflectivity(0.3);
-  mesh.AddBox(at, Vector3d(-half.x() - 0.6, -half.y() - 0.6, top), Vector3d(half.x() + 0.6, half.y() + 0.6, top + 0.35));
+  mesh.AddBox(at, Vector3d(-half.x() - 0.6, -half.y() - 0.6, top),
+              Vector3d(half.x() + 0.6, half.y() + 0.6, top + 0.35));
   for (const double x : {-half.x() + 0.5, half.x() - 0.5}) {
     for (const double y : {-half.y() - 0.22, half.y() + 0.22}) {
       mesh.AddCylinder(at * Vector3d(x, y, -0.5), at * Vector3d(x, y, top), 0.06, 8);
@@ -172,7 +177,8 @@ void AddHouse(MeshBuilder& mesh, const Pose& at, double length, double depth, in
   }
   for (int unit = 0; unit < 6; ++unit) {
     const double x = random.Uniform(-half.x() + 1.0, half.x() - 1.0);
-    const double z = kStorey * static_cast<double>(random.Bits() % static_cast<unsigned>(floors)) + 2.8;
+    const double z =
+        kStorey * static_cast<double>(random.Bits() % static_cast<unsigned>(floors)) + 2.8;
     mesh.AddBox(at * Upright({x, half.y() + 0.35, z}), Vector3d(0.8, 0.35, 0.55));
   }
   AddEntrance(mesh, at, -half.y() - 0.15);

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
+#include <vector>
 
 #include "hv_sim/mesh_builder.h"
 #include "hv_sim/random.h"

@@ -15,9 +15,9 @@ std::uint32_t Key(Random& random) { return static_cast<std::uint32_t>(random.Bit
 /// A heap of loose material: rough, half in the ground, with stones on and around it.
 void AddHeap(MeshBuilder& mesh, const Pose& at, double radius, double height, Random& random) {
   mesh.SetReflectivity(random.Uniform(0.2, 0.45));
-  const Pose tilted = at * MakePose(RotationFromRpy(random.Uniform(-0.1, 0.1),
-                                                    random.Uniform(-0.1, 0.1), 0.0),
-                                    Vector3d::Zero());
+  const Pose tilted =
+      at * MakePose(RotationFromRpy(random.Uniform(-0.1, 0.1), random.Uniform(-0.1, 0.1), 0.0),
+                    Vector3d::Zero());
   mesh.AddEllipsoid(tilted, {0.8 * radius, 0.65 * radius, height}, 0.25, Key(random));
   for (int i = 0; i < 12; ++i) {
     const double turn = random.Uniform(-M_PI, M_PI);
@@ -112,10 +112,10 @@ void AddPlankPile(MeshBuilder& mesh, const Pose& at, Random& random) {
   const int count = 4 + static_cast<int>(random.Bits() % 6);
   for (int i = 0; i < count; ++i) {
     const Pose plank =
-        at * MakePose(RotationFromRpy(random.Uniform(-0.06, 0.06), random.Uniform(-0.04, 0.04),
-                                      random.Uniform(-0.25, 0.25)),
-                      Vector3d(random.Uniform(-0.1, 0.1), random.Uniform(-0.2, 0.2),
-                               0.04 + 0.05 * i));
+        at *
+        MakePose(RotationFromRpy(random.Uniform(-0.06, 0.06), random.Uniform(-0.04, 0.04),
+                                 random.Uniform(-0.25, 0.25)),
+                 Vector3d(random.Uniform(-0.1, 0.1), random.Uniform(-0.2, 0.2), 0.04 + 0.05 * i));
     mesh.AddBox(plank, Vector3d(1.6, 0.18, 0.04));
   }
 }
@@ -144,8 +144,8 @@ void AddContainer(MeshBuilder& mesh, const Pose& at, Random& /*random*/) {
 
 void AddMixer(MeshBuilder& mesh, const Pose& at, Random& random) {
   mesh.SetReflectivity(0.45);
-  const Pose drum = at * MakePose(RotationFromRpy(0.0, random.Uniform(0.3, 0.8), 0.0),
-                                  Vector3d(0.0, 0.0, 0.95));
+  const Pose drum =
+      at * MakePose(RotationFromRpy(0.0, random.Uniform(0.3, 0.8), 0.0), Vector3d(0.0, 0.0, 0.95));
   mesh.AddEllipsoid(drum, {0.4, 0.4, 0.5}, 0.03, Key(random));
   for (const double x : {-0.45, 0.45}) {
     for (const double y : {-0.35, 0.35}) {
@@ -196,9 +196,9 @@ void AddRailing(MeshBuilder& mesh, const std::vector<Vector3d>& points) {
 }
 
 std::vector<Prop> SiteProps() {
-  return {{AddMound, 0.85},     {AddBrickPallet, 0.68}, {AddPipeStack, 1.2}, {AddCableDrum, 0.7},
-          {AddBarrel, 0.35},    {AddTrafficCone, 0.3},  {AddTrestle, 0.85},  {AddPlankPile, 1.1},
-          {AddCartonStack, 0.3}, {AddLadder, 0.85},     {AddMixer, 0.75},    {AddBarrel, 0.35}};
+  return {{AddMound, 0.85},      {AddBrickPallet, 0.68}, {AddPipeStack, 1.2}, {AddCableDrum, 0.7},
+          {AddBarrel, 0.35},     {AddTrafficCone, 0.3},  {AddTrestle, 0.85},  {AddPlankPile, 1.1},
+          {AddCartonStack, 0.3}, {AddLadder, 0.85},      {AddMixer, 0.75},    {AddBarrel, 0.35}};
 }
 
 }  // namespace hv::sim

@@ -78,8 +78,8 @@ void AddLining(MeshBuilder& mesh, const Axis& axis, double from, double to, doub
     const Vector2d wall = Profile(t);
     const Vector3d smooth = station(s) * Vector3d(0.0, wall.x(), wall.y());
     if (roughness <= 0.0) return smooth;
-    const double bulge = roughness * (SmoothNoise(smooth / 1.6, seed) +
-                                      0.4 * SmoothNoise(smooth / 0.5, seed + 7));
+    const double bulge =
+        roughness * (SmoothNoise(smooth / 1.6, seed) + 0.4 * SmoothNoise(smooth / 0.5, seed + 7));
     const Vector3d inward(0.0, -wall.x() / kHalfWidth, -wall.y() / kCrown);
     return smooth + station(s).linear() * Vector3d(bulge * inward.normalized());
   });
@@ -104,7 +104,8 @@ void AddNiche(MeshBuilder& mesh, const Pose& at, double side) {
   const auto block = [&](double x0, double x1, double z0, double z1) {
     const double wall = side * (kHalfWidth - 0.02);
     const double inner = side * (kHalfWidth - 0.3);
-    mesh.AddBox(at, Vector3d(x0, std::min(wall, inner), z0), Vector3d(x1, std::max(wall, inner), z1));
+    mesh.AddBox(at, Vector3d(x0, std::min(wall, inner), z0),
+                Vector3d(x1, std::max(wall, inner), z1));
   };
   block(-0.9, -0.7, 0.0, 2.2);
   block(0.7, 0.9, 0.0, 2.2);
@@ -153,8 +154,12 @@ void AddPortal(MeshBuilder& mesh, const Axis& axis, double s) {
   const Pose at = axis.FrameAt(s);
   const Vector3d left = at * Vector3d(0.0, kHalfWidth, 0.0);
   const Vector3d right = at * Vector3d(0.0, -kHalfWidth, 0.0);
-  AddWall(mesh, {left.head<2>(), right.head<2>(), {{0.7, 2.0, 0.0, 2.1}, {3.2, 4.4, 1.0, 2.0}},
-                 left.z(), kCrown, 0.3});
+  AddWall(mesh, {left.head<2>(),
+                 right.head<2>(),
+                 {{0.7, 2.0, 0.0, 2.1}, {3.2, 4.4, 1.0, 2.0}},
+                 left.z(),
+                 kCrown,
+                 0.3});
 }
 
 std::vector<Vector3d> RouteAlong(const Axis& axis, double from, double to) {
@@ -167,8 +172,10 @@ std::vector<Vector3d> RouteAlong(const Axis& axis, double from, double to) {
 
 PersonPath Walker(const Axis& axis, double from, double to, double phase) {
   PersonPath path;
-  for (double s = from; s <= to; s += 4.0) path.waypoints.emplace_back(axis.FrameAt(s) * Vector3d(0.0, 0.95, 0.0));
-  for (double s = to; s >= from; s -= 4.0) path.waypoints.emplace_back(axis.FrameAt(s) * Vector3d(0.0, -0.95, 0.0));
+  for (double s = from; s <= to; s += 4.0)
+    path.waypoints.emplace_back(axis.FrameAt(s) * Vector3d(0.0, 0.95, 0.0));
+  for (double s = to; s >= from; s -= 4.0)
+    path.waypoints.emplace_back(axis.FrameAt(s) * Vector3d(0.0, -0.95, 0.0));
   path.phase = phase;
   return path;
 }
@@ -213,7 +220,7 @@ World MakeStraightTunnel(std::uint32_t seed) {
   site.mesh.Undulate(0.005, 0.9, seed);
   // Black with soot, so that a scanner loses the ends and sees nothing but the smooth lining, which
   // is added last and overlaps the ends so that no crack is left.
-  site.mesh.LimitReflectivity(0.04);
+  site.mesh.LimitReflectivity(0.03);
   constexpr double kOverlap = 0.05;
   AddLining(site.mesh, axis, kPortal - kOverlap, far + kOverlap, 0.0, seed);
   world.mesh = site.mesh.mesh();

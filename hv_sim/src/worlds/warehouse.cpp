@@ -24,9 +24,9 @@ constexpr int kLevels = 3;
 std::vector<double> RackAxes() { return {6.0, 11.0, 16.0, 21.0, 26.0}; }
 
 std::vector<Vector3d> Route() {
-  return {{5.0, 3.5, 0.0},   {49.0, 3.5, 0.0},  {49.0, 8.5, 0.0},  {5.0, 8.5, 0.0},
-          {5.0, 13.5, 0.0},  {49.0, 13.5, 0.0}, {49.0, 23.5, 0.0}, {5.0, 23.5, 0.0},
-          {5.0, 28.5, 0.0},  {49.0, 28.5, 0.0}, {49.0, 18.5, 0.0}, {5.0, 18.5, 0.0}};
+  return {{5.0, 3.5, 0.0},  {49.0, 3.5, 0.0},  {49.0, 8.5, 0.0},  {5.0, 8.5, 0.0},
+          {5.0, 13.5, 0.0}, {49.0, 13.5, 0.0}, {49.0, 23.5, 0.0}, {5.0, 23.5, 0.0},
+          {5.0, 28.5, 0.0}, {49.0, 28.5, 0.0}, {49.0, 18.5, 0.0}, {5.0, 18.5, 0.0}};
 }
 
 /// A load on a pallet: cartons, a wrapped block or barrels, never quite straight.
@@ -99,13 +99,18 @@ void AddShell(MeshBuilder& mesh) {
   mesh.SetReflectivity(0.3);
   AddFloor(mesh, {{0.0, 0.0}, {kLength, kDepth}, 0.0});
   mesh.SetReflectivity(0.6);
-  const std::vector<Opening> gates = {{4.0, 7.0, 0.0, 3.4}, {12.0, 15.0, 0.0, 3.4},
-                                      {20.0, 23.0, 0.0, 3.4}};
-  AddWall(mesh, {{0.0, 0.0}, {kLength, 0.0}, Windows(kLength, 2.0, 5.0, 2.5, 5.0, 6.5), 0.0,
-                 kHeight, 0.3});
+  const std::vector<Opening> gates = {
+      {4.0, 7.0, 0.0, 3.4}, {12.0, 15.0, 0.0, 3.4}, {20.0, 23.0, 0.0, 3.4}};
+  AddWall(
+      mesh,
+      {{0.0, 0.0}, {kLength, 0.0}, Windows(kLength, 2.0, 5.0, 2.5, 5.0, 6.5), 0.0, kHeight, 0.3});
   AddWall(mesh, {{kLength, 0.0}, {kLength, kDepth}, {{6.0, 7.2, 0.0, 2.1}}, 0.0, kHeight, 0.3});
-  AddWall(mesh, {{kLength, kDepth}, {0.0, kDepth}, Windows(kLength, 2.0, 5.0, 2.5, 5.0, 6.5), 0.0,
-                 kHeight, 0.3});
+  AddWall(mesh, {{kLength, kDepth},
+                 {0.0, kDepth},
+                 Windows(kLength, 2.0, 5.0, 2.5, 5.0, 6.5),
+                 0.0,
+                 kHeight,
+                 0.3});
   AddWall(mesh, {{0.0, kDepth}, {0.0, 0.0}, gates, 0.0, kHeight, 0.3});
   for (double x = 3.0; x < kLength; x += 6.0) {
     for (const double y : {0.3, kDepth - 0.3}) {
@@ -155,10 +160,9 @@ void AddForklift(MeshBuilder& mesh, const Pose& at, Random& random) {
 void AddPalletLoad(MeshBuilder& mesh, const Pose& at, Random& random) { AddLoad(mesh, at, random); }
 
 void AddOpenFloor(Site& site) {
-  const std::vector<Prop> props = {{AddPalletLoad, 0.72}, {AddPalletLoad, 0.72},
-                                   {AddForklift, 1.7},    {AddBarrel, 0.35},
-                                   {AddCableDrum, 0.7},   {AddCartonStack, 0.35},
-                                   {AddTrafficCone, 0.3}, {AddPlankPile, 1.1}};
+  const std::vector<Prop> props = {
+      {AddPalletLoad, 0.72}, {AddPalletLoad, 0.72},  {AddForklift, 1.7},    {AddBarrel, 0.35},
+      {AddCableDrum, 0.7},   {AddCartonStack, 0.35}, {AddTrafficCone, 0.3}, {AddPlankPile, 1.1}};
   site.Scatter(props, {{0.8, 0.8}, {7.5, 31.2}, 0.0}, 90);
   site.Scatter(props, {{46.8, 0.8}, {53.2, 31.2}, 0.0}, 90);
   site.Scatter(props, {{8.0, 0.8}, {46.0, 2.2}, 0.0}, 60);
