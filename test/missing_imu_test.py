@@ -9,7 +9,8 @@ import rostest
 from rosgraph_msgs.msg import Log
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from recording import POINTS, Collector, Diagnostics, Player, wait_until  # noqa: E402
+from recording import (  # noqa: E402
+    POINTS, RECORDING, Collector, Diagnostics, Player, wait_until)
 
 
 class MissingImu(unittest.TestCase):
@@ -17,7 +18,7 @@ class MissingImu(unittest.TestCase):
     def test_warning_names_the_topic_and_the_alternative(self):
         log = Collector("/rosout", Log)
         diagnostics = Diagnostics()
-        player = Player(rospy.get_param("~recording"), imu="/other_imu")
+        player = Player(RECORDING, imu="/other_imu")
         self.assertTrue(player.wait_for_node((POINTS,)))
         stop = rospy.get_rostime() + rospy.Duration(20.0)
         while "/imu" not in diagnostics.message() and rospy.get_rostime() < stop:

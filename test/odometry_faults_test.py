@@ -12,7 +12,7 @@ from std_srvs.srv import SetBool, Trigger
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from recording import (  # noqa: E402
-    IMU, POINTS, Diagnostics, Player, odometry_collector, shifted, wait_until)
+    IMU, POINTS, RECORDING, Diagnostics, Player, odometry_collector, shifted, wait_until)
 
 
 class OdometryFaults(unittest.TestCase):
@@ -23,7 +23,7 @@ class OdometryFaults(unittest.TestCase):
     def setUpClass(cls):
         cls.odometry = odometry_collector()
         cls.diagnostics = Diagnostics()
-        cls.player = Player(rospy.get_param("~recording"))
+        cls.player = Player(RECORDING)
         assert wait_until(cls.odometry.connected)
         assert cls.player.wait_for_node()
 

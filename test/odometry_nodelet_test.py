@@ -8,14 +8,14 @@ import rospy
 import rostest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from recording import Player, odometry_collector, wait_until  # noqa: E402
+from recording import RECORDING, Player, odometry_collector, wait_until  # noqa: E402
 
 
 class OdometryNodelet(unittest.TestCase):
 
     def test_odometry_is_published(self):
         odometry = odometry_collector()
-        player = Player(rospy.get_param("~recording"))
+        player = Player(RECORDING)
         self.assertTrue(player.wait_for_node() and wait_until(odometry.connected))
         player.play(player.clouds(0, 40), lambda: len(odometry))
         self.assertTrue(wait_until(lambda: len(odometry) >= 20), len(odometry))

@@ -11,7 +11,8 @@ import rospy
 import rostest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from recording import Player, odometry_collector, wait_until  # noqa: E402
+from recording import (  # noqa: E402
+    CONFIG, HV_LIO_NODE, HV_SLAM, RECORDING, Player, odometry_collector, wait_until)
 
 
 def rows_of(path):
@@ -24,14 +25,13 @@ def rows_of(path):
 class OdometryStart(unittest.TestCase):
 
     def setUp(self):
-        self.node = rospy.get_param("~node")
         self.folder = tempfile.TemporaryDirectory()
 
     def tearDown(self):
         self.folder.cleanup()
 
     def start_with(self, *arguments):
-        return subprocess.Popen([self.node, "__name:=started"] + list(arguments),
+        return subprocess.Popen([HV_LIO_NODE, "__name:=started"] + list(arguments),
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
     def refusal_of(self, *arguments):
@@ -61,11 +61,9 @@ class OdometryStart(unittest.TestCase):
 
     def test_interrupt_saves_the_trajectory_of_hv_slam(self):
         saved = os.path.join(self.folder.name, "new", "node.tum")
-        recording = rospy.get_param("~recording")
-        config = rospy.get_param("~config")
-        player = Player(recording)
+        player = Player(RECORDING)
         odometry = odometry_collector()
-        process = self.start_with("_config_file:=" + config, "_save_trajectory:=" + saved)
+        process = self.start_with("_config_file:=" + CONFIG, "_save_trajectory:=" + saved)
         self.assertTrue(player.wait_for_node() and wait_until(odometry.connected))
         player.play(player.messages, lambda: len(odometry))
         sent = sum(topic == "/points" for topic, _ in player.messages)
@@ -79,7 +77,7 @@ class OdometryStart(unittest.TestCase):
         self.assertEqual(process.returncode, 0, output)
         rospy.delete_param("/started")
 
-        subprocess.run([rospy.get_param("~hv_slam"), "--config", config, "--bag", recording,
+        subprocess.run([HV_SLAM, "--config", CONFIG, "--bag", RECORDING,
                         "--out", self.folder.name], check=True, stdout=subprocess.DEVNULL)
         online = rows_of(saved)
         offline = rows_of(os.path.join(self.folder.name, "odometry.tum"))

@@ -16,7 +16,8 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import MarkerArray
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from recording import Collector, Diagnostics, Player, odometry_collector, wait_until  # noqa: E402
+from recording import (  # noqa: E402
+    CONFIG, HV_SLAM, RECORDING, Collector, Diagnostics, Player, odometry_collector, wait_until)
 
 
 def is_symmetric_positive(covariance):
@@ -43,7 +44,7 @@ class OdometryTopics(unittest.TestCase):
         cls.keyframes = Collector("/keyframe", Keyframe)
         cls.transforms = Collector("/tf", TFMessage)
         cls.diagnostics = Diagnostics()
-        cls.player = Player(rospy.get_param("~recording"))
+        cls.player = Player(RECORDING)
         collectors = (cls.odometry, cls.odometry_imu, cls.clouds, cls.paths, cls.voxels,
                       cls.keyframes, cls.transforms)
         assert wait_until(lambda: all(collector.connected() for collector in collectors))
@@ -154,8 +155,7 @@ class OdometryTopics(unittest.TestCase):
 
     def test_trajectory_is_that_of_hv_slam(self):
         with tempfile.TemporaryDirectory() as folder:
-            subprocess.run([rospy.get_param("~hv_slam"), "--config", rospy.get_param("~config"),
-                            "--bag", rospy.get_param("~recording"), "--out", folder],
+            subprocess.run([HV_SLAM, "--config", CONFIG, "--bag", RECORDING, "--out", folder],
                            check=True, stdout=subprocess.DEVNULL)
             with open(os.path.join(folder, "odometry.tum")) as file:
                 rows = [line.split() for line in file if not line.startswith("#")]

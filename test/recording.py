@@ -4,14 +4,23 @@ The tests publish every message themselves, so that each can spoil the data in i
 depends on the speed of the machine: the player waits for the node to keep up.
 """
 import copy
+import os
+import struct
 import threading
 
 import rosbag
+import rospkg
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, PointCloud2
 from tf2_msgs.msg import TFMessage
+
+_DEVEL = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+RECORDING = os.path.join(_DEVEL, "share", "hv_bringup", "test", "recording.bag")
+HV_SLAM = os.path.join(_DEVEL, "lib", "hv_replay", "hv_slam")
+HV_LIO_NODE = os.path.join(_DEVEL, "lib", "hv_lio", "hv_lio_node")
+CONFIG = os.path.join(rospkg.RosPack().get_path("hv_bringup"), "..", "config", "robot.yaml")
 
 POINTS = "/points"
 IMU = "/imu"
