@@ -12,7 +12,7 @@ import rostest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from recording import (  # noqa: E402
-    CONFIG, HV_LIO_NODE, HV_SLAM, RECORDING, Player, odometry_collector, wait_until)
+    CONFIG, HV_LIO_NODE, HV_SLAM, POINTS, RECORDING, Player, odometry_collector, wait_until)
 
 
 def rows_of(path):
@@ -59,14 +59,15 @@ class OdometryStart(unittest.TestCase):
         self.assertIn("/nowhere.yaml", self.refusal_of("_config_file:=/nowhere.yaml"))
         rospy.delete_param("/started")
 
-    def test_interrupt_saves_the_trajectory_of_hv_slam(self):
+    def trajectory_with(self, config):
+        """What a node with this configuration saves when it is interrupted after the recording."""
         saved = os.path.join(self.folder.name, "new", "node.tum")
         player = Player(RECORDING)
         odometry = odometry_collector()
-        process = self.start_with("_config_file:=" + CONFIG, "_save_trajectory:=" + saved)
-        self.assertTrue(player.wait_for_node() and wait_until(odometry.connected))
+        process = self.start_with(config, "_save_trajectory:=" + saved)
+        self.assertTrue(player.wait_for_node((POINTS,)) and wait_until(odometry.connected))
         player.play(player.messages, lambda: len(odometry))
-        sent = sum(topic == "/points" for topic, _ in player.messages)
+        sent = sum(topic == POINTS for topic, _ in player.messages)
         self.assertTrue(wait_until(lambda: len(odometry) > 0.75 * sent))
         count = -1
         while count != len(odometry):
@@ -76,15 +77,32 @@ class OdometryStart(unittest.TestCase):
         output, _ = process.communicate(timeout=5)
         self.assertEqual(process.returncode, 0, output)
         rospy.delete_param("/started")
+        return rows_of(saved)
 
-        subprocess.run([HV_SLAM, "--config", CONFIG, "--bag", RECORDING,
-                        "--out", self.folder.name], check=True, stdout=subprocess.DEVNULL)
-        online = rows_of(saved)
-        offline = rows_of(os.path.join(self.folder.name, "odometry.tum"))
+    def offline_trajectory(self):
+        subprocess.run([HV_SLAM, "--config", CONFIG, "--bag", RECORDING, "--out",
+                        self.folder.name], check=True, stdout=subprocess.DEVNULL)
+        return rows_of(os.path.join(self.folder.name, "odometry.tum"))
+
+    def expect_equal(self, online, offline, tolerance):
         self.assertEqual(sorted(online), sorted(offline))
         for stamp, pose in online.items():
             for value, reference in zip(pose, offline[stamp]):
-                self.assertAlmostEqual(value, reference, delta=1e-6)
+                self.assertAlmostEqual(value, reference, delta=tolerance)
+
+    def test_interrupt_saves_the_trajectory_of_hv_slam(self):
+        online = self.trajectory_with("_config_file:=" + CONFIG)
+        self.expect_equal(online, self.offline_trajectory(), 1e-6)
+
+    def test_extrinsic_from_tf_is_that_of_the_file(self):
+        online = self.trajectory_with(self.config_with("output:\n  extrinsic_from_tf: true\n"))
+        self.expect_equal(online, self.offline_trajectory(), 2e-3)
+
+    def test_runs_without_an_imu(self):
+        online = self.trajectory_with(self.config_with("odometry:\n  use_imu: false\n"))
+        self.assertNotIn("/odometry_imu", dict(rospy.get_published_topics()))
+        last = online[max(online)]
+        self.assertLess(max(abs(value) for value in last[:3]), 10.0)
 
 
 if __name__ == "__main__":

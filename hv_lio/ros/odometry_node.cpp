@@ -184,7 +184,6 @@ void OdometryNode::Handle(const InputQueue::Input& input) {
   ReportChanges(counters);
   for (const ScanResult& result : results) Deliver(result, counters);
   health_.OnCounters(counters, queue_.counters());
-  for (const std::string& event : engine_->TakeEvents()) ROS_WARN_STREAM(event);
 }
 
 void OdometryNode::Deliver(const ScanResult& result, const EngineCounters& counters) {
@@ -205,6 +204,12 @@ void OdometryNode::Deliver(const ScanResult& result, const EngineCounters& count
 }
 
 void OdometryNode::ReportChanges(const EngineCounters& counters) {
+  const std::size_t faults = counters.pipeline.imu_gaps + counters.segments();
+  for (const std::string& event : engine_->TakeEvents()) {
+    if (faults == faults_) ROS_INFO_STREAM(event);
+    if (faults != faults_) ROS_WARN_STREAM_THROTTLE(0.2, event);
+  }
+  faults_ = faults;
   if (counters.segments() != segments_) predictor_.Clear();
   segments_ = counters.segments();
   if (!time_layout_told_ && !counters.time_layout.empty()) {

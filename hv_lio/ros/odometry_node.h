@@ -73,6 +73,7 @@ class OdometryNode {
 
   Trajectory trajectory_;          // worker only
   std::size_t segments_ = 0;       // worker only
+  std::size_t faults_ = 0;         // worker only
   std::size_t unusable_ = 0;       // worker only
   bool time_layout_told_ = false;  // worker only
 
