@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Installs the Debian packages HV-LIOM needs (without recommends) and builds it into build/.
 # Safe to repeat: packages that are there are left alone, the build is incremental.
+# Arguments go to cmake; HV_BUILD_DIR names another build folder.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-build=${HV_BUILD_DIR:-$root/build}
+build=$(realpath -m "${HV_BUILD_DIR:-$root/build}")
 
 packages=(
   ca-certificates catkin ccache cmake g++ make ninja-build
@@ -18,26 +19,38 @@ packages=(
   ros-geometry-msgs ros-message-generation ros-message-runtime ros-nav-msgs ros-sensor-msgs
   ros-std-msgs rosbash)
 
+fail() {
+  echo "setup: $*" >&2
+  exit 1
+}
+
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' ||
     missing+=("$package")
 done
 if ((${#missing[@]} > 0)); then
-  echo "setup: installing ${#missing[@]} Debian packages"
+  command -v apt-get >/dev/null || fail "these Debian packages are missing: ${missing[*]}"
   as_root=()
-  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
-  "${as_root[@]}" apt-get update -qq
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq \
-    --no-install-recommends "${missing[@]}" >/dev/null
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || fail "run as root, or install sudo: packages are missing"
+    as_root=(sudo)
+  fi
+  echo "setup: installing ${#missing[@]} Debian packages and what they need (2 GB, minutes)"
+  "${as_root[@]}" apt-get -o DPkg::Lock::Timeout=300 update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 \
+    install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 fi
+getent hosts localhost >/dev/null ||
+  echo "setup: 'localhost' does not resolve, ROS nodes will not find each other: see /etc/hosts" >&2
 
 # A python3 of pyenv or conda first on PATH lacks catkin's modules.
 export PATH="/usr/bin:$PATH"
+mkdir -p "$build"
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
-  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@" >"$build.log" 2>&1 ||
-  { tail -n 30 "$build.log" >&2; echo "setup: cmake failed, see $build.log" >&2; exit 1; }
-echo "setup: building"
+  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@" >"$build/setup.log" 2>&1 ||
+  { tail -n 30 "$build/setup.log" >&2; fail "cmake failed, see $build/setup.log"; }
+echo "setup: building (10 minutes on two cores the first time)"
 cmake --build "$build"
 echo "setup: done; programs are in $build/devel/lib, 'source $build/devel/setup.bash' for ROS"
