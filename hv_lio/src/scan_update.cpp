@@ -14,6 +14,8 @@ namespace hv::lio {
 namespace {
 
 constexpr std::size_t kCellsPerTask = 256;
+/// Variance of the axes of a Gaussian, which are known to about 20 degrees [rad^2].
+constexpr double kGaussianTiltVariance = 0.1;
 
 }  // namespace
 
@@ -31,8 +33,12 @@ void UpdateConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("information_scale", information_scale,
                 "share of the residuals that count as independent");
   visitor.Field("min_residuals", min_residuals, "fewest residuals for an update");
-  visitor.Field("degenerate_ratio", degenerate_ratio,
-                "share of the residuals' constraint below which a direction is degenerate");
+  visitor.Field("degenerate_sigma_m", degenerate_sigma_m,
+                "a direction that the scan alone leaves less certain than this is degenerate [m]");
+  visitor.Field("degenerate_sigma_rad", degenerate_sigma_rad, "the same for rotation [rad]");
+  visitor.Field("degenerate_noise_ratio", degenerate_noise_ratio,
+                "a direction is degenerate when its constraint is less than this many times what "
+                "uncertain normals alone would feign");
 }
 
 void UpdateConfig::Validate(ConfigProblems& problems) const {
@@ -47,8 +53,11 @@ void UpdateConfig::Validate(ConfigProblems& problems) const {
   problems.Require(information_scale > 0.0 && information_scale <= 1.0,
                    "update.information_scale", "must be positive and at most 1");
   problems.Require(min_residuals >= 6, "update.min_residuals", "must be at least 6");
-  problems.Require(degenerate_ratio >= 0.0 && degenerate_ratio < 1.0, "update.degenerate_ratio",
-                   "must lie between 0 and 1");
+  problems.Require(degenerate_sigma_m > 0.0, "update.degenerate_sigma_m", "must be positive");
+  problems.Require(degenerate_sigma_rad > 0.0, "update.degenerate_sigma_rad",
+                   "must be positive");
+  problems.Require(degenerate_noise_ratio >= 0.0, "update.degenerate_noise_ratio",
+                   "must not be negative");
 }
 
 /// Normal equations of the pose and what goes with them.
@@ -58,7 +67,11 @@ struct ScanUpdate::Normal {
   std::size_t count = 0;
   std::size_t planar = 0;
   double abs_residual = 0.0;
-  void Add(const Residual& residual, double weight) {
+  /// Translation information that the uncertainty of the normals feigns.
+  Eigen::Matrix3d feigned = Eigen::Matrix3d::Zero();
+
+  void Add(const Residual& residual, double weight, const Eigen::Matrix3d& normal_covariance) {
+    feigned += weight * normal_covariance;
     const Vector6d scaled = weight * residual.jacobian;
     information.noalias() += scaled * residual.jacobian.transpose();
     gradient += residual.value * scaled;
@@ -72,6 +85,7 @@ struct ScanUpdate::Normal {
     count += other.count;
     planar += other.planar;
     abs_residual += other.abs_residual;
+    feigned += other.feigned;
   }
 };
 
@@ -79,7 +93,7 @@ void ScanUpdate::AddCell(const SurfaceCell& cell, const SurfaceFeature& feature,
                          const Pose& T_odom_imu, const Matrix6d& pose_covariance,
                          Normal& normal) const {
   const double model_variance = config_.model_sigma_m * config_.model_sigma_m;
-  const auto weigh = [&](Residual& residual, double factor) {
+  const auto weigh = [&](Residual& residual, double factor, const Eigen::Matrix3d& tilt) {
     residual.variance += model_variance;
     const double predicted =
         residual.variance + residual.jacobian.dot(pose_covariance * residual.jacobian);
@@ -87,19 +101,21 @@ void ScanUpdate::AddCell(const SurfaceCell& cell, const SurfaceFeature& feature,
     if (squared > config_.gate_sigmas * config_.gate_sigmas * predicted) return false;
     const double sigmas = std::sqrt(squared / residual.variance);
     const double robust = std::min(1.0, config_.huber_sigmas / std::max(sigmas, 1e-12));
-    normal.Add(residual, factor * robust / residual.variance);
+    normal.Add(residual, factor * robust / residual.variance, tilt);
     return true;
   };
   if (feature.kind == SurfaceFeature::Kind::kPlane) {
     Residual residual = PlaneResidual(cell, feature, T_odom_imu);
-    if (weigh(residual, config_.information_scale)) ++normal.planar;
+    const Eigen::Matrix3d tilt = feature.NormalCovariance();
+    if (weigh(residual, config_.information_scale, tilt)) ++normal.planar;
     return;
   }
   if (config_.gaussian_weight == 0.0) return;
+  const Eigen::Matrix3d isotropic_tilt = kGaussianTiltVariance * Eigen::Matrix3d::Identity();
   for (int axis = 0; axis < 3; ++axis) {
     if (feature.variance[axis] > config_.gaussian_sigma_m * config_.gaussian_sigma_m) continue;
     Residual residual = GaussianResidual(cell, feature, axis, T_odom_imu);
-    weigh(residual, config_.information_scale * config_.gaussian_weight);
+    weigh(residual, config_.information_scale * config_.gaussian_weight, isotropic_tilt);
   }
 }
 
@@ -125,19 +141,23 @@ ScanUpdate::Normal ScanUpdate::Accumulate(const std::vector<SurfaceCell>& cells,
 }
 
 void ScanUpdate::FindDegenerate(const Normal& normal, UpdateSummary& summary) const {
-  const auto weak = [&](const Eigen::Matrix3d& information) {
+  const auto weak = [](const Eigen::Matrix3d& information, const Eigen::Matrix3d& feigned,
+                       double sigma) {
     std::vector<Eigen::Vector3d> found;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(information);
-    const double trace = std::max(information.trace(), 1e-12);
     for (int i = 0; i < 3; ++i) {
-      if (solver.eigenvalues()[i] < config_.degenerate_ratio * trace) {
-        found.emplace_back(solver.eigenvectors().col(i));
-      }
+      const Eigen::Vector3d direction = solver.eigenvectors().col(i);
+      const double least =
+          std::max(1.0 / (sigma * sigma), direction.dot(feigned * direction));
+      if (solver.eigenvalues()[i] < least) found.push_back(direction);
     }
     return found;
   };
-  summary.degenerate_translation = weak(normal.information.topLeftCorner<3, 3>());
-  summary.degenerate_rotation = weak(normal.information.bottomRightCorner<3, 3>());
+  summary.degenerate_translation =
+      weak(normal.information.topLeftCorner<3, 3>(),
+           config_.degenerate_noise_ratio * normal.feigned, config_.degenerate_sigma_m);
+  summary.degenerate_rotation = weak(normal.information.bottomRightCorner<3, 3>(),
+                                     Eigen::Matrix3d::Zero(), config_.degenerate_sigma_rad);
 }
 
 void ScanUpdate::RemoveDegenerate(const UpdateSummary& summary, Normal& normal) {

@@ -5,6 +5,13 @@
 #include <Eigen/Eigenvalues>
 
 namespace hv::lio {
+namespace {
+
+/// The unevenness of a surface is the same for neighbouring points: a voxel shows about this many
+/// independent samples of it, however many points it holds.
+constexpr double kIndependentPatches = 5.0;
+
+}  // namespace
 
 void VoxelFitConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("min_points", min_points, "points needed before a voxel is fitted");
@@ -68,6 +75,12 @@ double SurfaceFeature::PlaneVarianceAt(const Eigen::Vector3d& point) const {
   const double first = axes.col(0).dot(offset);
   const double second = axes.col(1).dot(offset);
   return offset_variance * (1.0 + first * first / variance[0] + second * second / variance[1]);
+}
+
+Eigen::Matrix3d SurfaceFeature::NormalCovariance() const {
+  const double offset = offset_variance + variance[2] / kIndependentPatches;
+  return offset * (axes.col(0) * axes.col(0).transpose() / variance[0] +
+                   axes.col(1) * axes.col(1).transpose() / variance[1]);
 }
 
 void FitFeature(const PointSums& sums, const Eigen::Vector3d& origin, double information,

@@ -20,7 +20,9 @@ struct UpdateConfig {
   double gaussian_sigma_m = 0.035;
   double information_scale = 0.1;
   int min_residuals = 30;
-  double degenerate_ratio = 0.01;
+  double degenerate_sigma_m = 0.1;
+  double degenerate_sigma_rad = 0.02;
+  double degenerate_noise_ratio = 2.0;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

@@ -40,6 +40,9 @@ struct SurfaceFeature {
   /// Variance of the plane along its normal at `point`: the tilt of the normal adds to the offset
   /// with the distance from the centre [m^2].
   double PlaneVarianceAt(const Eigen::Vector3d& point) const;
+
+  /// Covariance of the normal [rad^2].
+  Eigen::Matrix3d NormalCovariance() const;
 };
 
 /// When a voxel counts as planar, when it splits and when it settles.
