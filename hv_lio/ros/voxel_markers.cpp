@@ -15,7 +15,7 @@ using Triangles = std::vector<Triangle>;
 
 /// A unit circle in the plane z = 0.
 Triangles MakeDisc() {
-  constexpr int kSides = 12;
+  constexpr int kSides = 8;
   const auto rim = [](int i) {
     const double angle = 2.0 * M_PI * i / kSides;
     return Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
@@ -31,15 +31,12 @@ Triangles MakeSquare() {
   return {{a, b, c}, {a, c, d}};
 }
 
-/// The unit sphere as an octahedron with each face split in four.
+/// The octahedron in the unit sphere: round enough for bodies of decimetres by the ten thousand.
 Triangles MakeSphere() {
   Triangles sphere;
   for (int octant = 0; octant < 8; ++octant) {
-    const double sx = (octant & 1) ? -1 : 1, sy = (octant & 2) ? -1 : 1, sz = (octant & 4) ? -1 : 1;
-    const Eigen::Vector3d x(sx, 0, 0), y(0, sy, 0), z(0, 0, sz);
-    const Eigen::Vector3d xy = (x + y).normalized(), yz = (y + z).normalized(),
-                          zx = (z + x).normalized();
-    sphere.insert(sphere.end(), {{x, xy, zx}, {xy, y, yz}, {zx, yz, z}, {xy, yz, zx}});
+    const double x = (octant & 1) ? -1 : 1, y = (octant & 2) ? -1 : 1, z = (octant & 4) ? -1 : 1;
+    sphere.push_back({Eigen::Vector3d(x, 0, 0), Eigen::Vector3d(0, y, 0), Eigen::Vector3d(0, 0, z)});
   }
   return sphere;
 }

@@ -71,7 +71,7 @@ TEST(VoxelMarkers, EachKindHasItsNamespaceAndMergedPlanesShareAColour) {
   for (VoxelView& voxel : voxels) voxel.size = 1.0;
   const auto array = ToVoxelMarkers(voxels, "odom", Time::FromSeconds(1.0));
   ASSERT_EQ(array.markers.size(), 3U);
-  EXPECT_EQ(array.markers[0].points.size(), 36U);  // a disc of 12 triangles
+  EXPECT_EQ(array.markers[0].points.size(), 24U);  // a disc of 8 triangles
   ASSERT_EQ(array.markers[1].colors.size(), 18U);  // three squares of 2 triangles
   EXPECT_EQ(array.markers[1].colors[0].r, array.markers[1].colors[6].r);
   EXPECT_NE(array.markers[1].colors[0].r, array.markers[1].colors[12].r);
