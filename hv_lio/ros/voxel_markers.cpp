@@ -69,7 +69,7 @@ struct Style {
 };
 
 std::array<Style, 3> MakeStyles() {
-  return {Style{MakeDisc(), 2.0, MakeColor({0.35, 0.65, 0.95}, 0.85)},  // uniform disc: r = 2 sigma
+  return {Style{MakeDisc(), 2.0, MakeColor({0.5, 0.6, 0.7}, 0.6)},  // uniform disc: r = 2 sigma
           Style{MakeSquare(), std::sqrt(3.0), MakeColor({1, 1, 1}, 0.9)},
           Style{MakeSphere(), 1.0, MakeColor({0.95, 0.55, 0.2}, 0.8)}};
 }
