@@ -4,9 +4,7 @@
 #include <set>
 
 #include "bag_findings.h"
-#include "hv_core/so3.h"
-#include "hv_core/trajectory.h"
-#include "hv_lio/pipeline.h"
+#include "rotation_measurement.h"
 
 namespace hv::replay {
 namespace {
@@ -26,50 +24,21 @@ std::string FieldList(const PointCloudView& cloud) {
   return text;
 }
 
-/// Poses of the LiDAR by odometry that knows nothing of the IMU.
-class LidarOnlyOdometry {
- public:
-  explicit LidarOnlyOdometry(const lio::LioConfig& config) : pipeline_(WithoutImu(config)) {}
-
-  void Add(Scan scan) {
-    pipeline_.AddScan(std::move(scan));
-    while (const std::optional<lio::ScanResult> result = pipeline_.ProcessNext()) {
-      if (result->status == lio::ScanStatus::kTracking) {
-        poses_.push_back({result->estimate.stamp, result->estimate.T_odom_imu});
-      }
-    }
-  }
-
-  /// Rotations between scans that follow each other.
-  std::vector<RotationStep> Steps() const {
-    std::vector<RotationStep> steps;
-    for (std::size_t i = 1; i < poses_.size(); ++i) {
-      const double duration = poses_[i].stamp - poses_[i - 1].stamp;
-      if (duration <= 0.0 || duration > 0.5) continue;
-      const Eigen::Matrix3d turned =
-          poses_[i - 1].pose.linear().transpose() * poses_[i].pose.linear();
-      steps.push_back({poses_[i - 1].stamp, poses_[i].stamp, so3::Log(turned)});
-    }
-    return steps;
-  }
-
- private:
-  static lio::LioConfig WithoutImu(lio::LioConfig config) {
-    config.use_imu = false;
-    config.extrinsic = lio::ExtrinsicConfig();
-    config.lidar_time_offset_s = 0.0;
-    return config;
-  }
-
-  lio::Pipeline pipeline_;
-  std::vector<StampedPose> poses_;
-};
+/// The decoder for the stretch that odometry runs on: fewer points do.
+PointCloudDecoderConfig Thinned(PointCloudDecoderConfig config) {
+  config.point_stride = std::max(config.point_stride, 4);
+  return config;
+}
 
 /// Collects everything while the bag is read once.
 class Collector {
  public:
   Collector(const lio::SystemConfig& config, const BagCheckOptions& options, Time begin)
-      : options_(options), begin_(begin), decoder_(config.points), odometry_(config.odometry) {}
+      : config_(config),
+        options_(options),
+        begin_(begin),
+        decoder_(config.points),
+        thin_decoder_(Thinned(config.points)) {}
 
   bool AddCloud(const BagCloud& cloud) {
     if (stamps_.empty()) {
@@ -89,7 +58,9 @@ class Collector {
     for (const Point& point : decoded.scan.points) rings_.insert(point.ring);
     spans_.push_back({decoded.scan.stamp, decoded.scan.end()});
     const double at = cloud.arrival - begin_ - options_.start_s;
-    if (at >= 0.0 && at < options_.odometry_s) odometry_.Add(std::move(decoded.scan));
+    if (at >= 0.0 && at < options_.odometry_s) {
+      scans_.push_back(thin_decoder_.Decode(cloud.view).scan);
+    }
     return true;
   }
 
@@ -119,9 +90,7 @@ class Collector {
     check.covered_share = CoveredShare();
     std::sort(samples_.begin(), samples_.end(),
               [](const ImuSample& a, const ImuSample& b) { return a.stamp < b.stamp; });
-    if (options_.odometry_s > 0.0 && !samples_.empty()) {
-      check.rotation = MatchRotations(odometry_.Steps(), samples_);
-    }
+    if (!samples_.empty()) check.rotation = MeasureRotation(scans_, samples_, config_.odometry);
     return check;
   }
 
@@ -135,10 +104,12 @@ class Collector {
     return static_cast<double>(covered) / static_cast<double>(spans_.size());
   }
 
+  const lio::SystemConfig& config_;
   const BagCheckOptions options_;
   const Time begin_;
   PointCloudDecoder decoder_;
-  LidarOnlyOdometry odometry_;
+  PointCloudDecoder thin_decoder_;
+  std::vector<Scan> scans_;
   CloudFigures figures_;
   std::vector<Time> stamps_, arrivals_, imu_stamps_, imu_arrivals_;
   std::vector<ImuSample> samples_;

@@ -28,6 +28,13 @@ __attribute__((format(printf, 1, 2))) std::string Format(const char* format, ...
   return text;
 }
 
+/// The quaternion of a rotation whose w is not negative.
+Eigen::Quaterniond Upright(const Eigen::Matrix3d& rotation) {
+  Eigen::Quaterniond q(rotation);
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  return q;
+}
+
 /// Appends findings.
 class Judge {
  public:
@@ -121,7 +128,9 @@ void Judge::JudgePointTime() {
     return;
   }
   const bool doubtful = cloud.time->from_azimuth || cloud.time->other_clock;
-  Add(doubtful ? CheckLevel::kWarning : CheckLevel::kGood, "point time", cloud.time->ToString());
+  const std::string text = cloud.time->ToString();
+  Add(doubtful ? CheckLevel::kWarning : CheckLevel::kGood, "point time",
+      text.substr(text.find(": ") + 2));
   if (cloud.sweep_s > 1.2 * check_.points.median_interval_s && check_.points.count > 2) {
     Warn("point time", Format("a scan lasts %.3f s but the next follows after %.3f s: wrong unit?",
                               cloud.sweep_s, check_.points.median_interval_s));
@@ -207,7 +216,7 @@ void Judge::JudgeOffset() {
 void Judge::JudgeExtrinsic() {
   const RotationMatch* match = Match();
   if (match == nullptr) return;
-  const Eigen::Quaterniond q(match->R_imu_lidar);
+  const Eigen::Quaterniond q = Upright(match->R_imu_lidar);
   const std::string measured =
       match->all_axes ? Format("measured T_imu_lidar rotation (xyzw) [%.4f, %.4f, %.4f, %.4f]",
                                q.x(), q.y(), q.z(), q.w())
@@ -245,7 +254,7 @@ JsonObject StreamJson(const StreamFigures& stream) {
 }
 
 JsonObject RotationJson(const RotationMatch& match) {
-  const Eigen::Quaterniond q(match.R_imu_lidar);
+  const Eigen::Quaterniond q = Upright(match.R_imu_lidar);
   JsonObject json;
   json.Add("lidar_time_offset_s", match.offset_s).Add("correlation", match.correlation);
   json.Add("gyro_scale", match.gyro_scale).Add("all_axes", match.all_axes);

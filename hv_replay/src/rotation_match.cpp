@@ -14,6 +14,8 @@ constexpr std::size_t kMinSteps = 50;
 constexpr double kMinRate = 0.02;
 constexpr double kCoarseStep = 0.01;
 constexpr double kFineStep = 0.001;
+/// Times that outliers are left out and the rest is fitted again.
+constexpr int kTrimmings = 4;
 /// Share of the second singular value above which two axes were excited.
 constexpr double kSecondAxisShare = 0.03;
 
@@ -104,24 +106,31 @@ RotationMatch Fit(const Pairs& pairs, double offset_s) {
   return match;
 }
 
-/// Leaves out steps that disagree by far, such as those of a registration that slipped.
+double MedianNorm(const std::vector<Eigen::Vector3d>& vectors) {
+  std::vector<double> norms;
+  for (const Eigen::Vector3d& vector : vectors) norms.push_back(vector.norm());
+  std::sort(norms.begin(), norms.end());
+  return norms.empty() ? 0.0 : norms[norms.size() / 2];
+}
+
+/// Leaves out steps that disagree by far, such as those of a registration that slipped. The scale
+/// comes from medians, as slips spoil the one of the fit.
 std::vector<RotationStep> WithoutOutliers(const std::vector<RotationStep>& lidar,
                                           const GyroIntegral& gyro, const RotationMatch& match) {
-  std::vector<double> residuals;
+  const Pairs all = PairUp(lidar, gyro, match.offset_s);
+  const double scale = MedianNorm(all.gyro) / std::max(MedianNorm(all.lidar), 1e-9);
+  std::vector<Eigen::Vector3d> residuals;
   std::vector<RotationStep> paired;
   for (const RotationStep& step : lidar) {
     const Pairs pair = PairUp({step}, gyro, match.offset_s);
     if (pair.gyro.empty()) continue;
-    const Eigen::Vector3d expected = match.gyro_scale * (match.R_imu_lidar * pair.lidar[0]);
-    residuals.push_back((pair.gyro[0] - expected).norm());
+    residuals.emplace_back(pair.gyro[0] - scale * (match.R_imu_lidar * pair.lidar[0]));
     paired.push_back(step);
   }
-  std::vector<double> sorted = residuals;
-  std::sort(sorted.begin(), sorted.end());
-  const double limit = sorted.empty() ? 0.0 : 5.0 * sorted[sorted.size() / 2];
+  const double limit = 5.0 * MedianNorm(residuals);
   std::vector<RotationStep> kept;
   for (std::size_t i = 0; i < paired.size(); ++i) {
-    if (residuals[i] <= limit) kept.push_back(paired[i]);
+    if (residuals[i].norm() <= limit) kept.push_back(paired[i]);
   }
   return kept;
 }
@@ -161,13 +170,16 @@ std::optional<RotationMatch> MatchRotations(const std::vector<RotationStep>& lid
                                             double max_offset_s) {
   if (lidar.size() < kMinSteps || RmsRate(lidar) < kMinRate) return std::nullopt;
   const GyroIntegral integral(gyro);
-  const RotationMatch coarse = Search(lidar, integral, -max_offset_s, max_offset_s, kCoarseStep);
-  if (coarse.steps < kMinSteps) return std::nullopt;
-  const std::vector<RotationStep> consistent = WithoutOutliers(lidar, integral, coarse);
-  const double range = 2.0 * kCoarseStep;
-  RotationMatch match = Search(consistent, integral, coarse.offset_s - range,
-                               coarse.offset_s + range, kFineStep);
-  if (match.steps < kMinSteps) match = coarse;
+  RotationMatch match = Search(lidar, integral, -max_offset_s, max_offset_s, kCoarseStep);
+  if (match.steps < kMinSteps) return std::nullopt;
+  for (int i = 0; i < kTrimmings; ++i) {
+    const std::vector<RotationStep> consistent = WithoutOutliers(lidar, integral, match);
+    const RotationMatch refined =
+        Search(consistent, integral, match.offset_s - 2.0 * kCoarseStep,
+               match.offset_s + 2.0 * kCoarseStep, kFineStep);
+    if (refined.steps < kMinSteps) break;
+    match = refined;
+  }
   match.rms_rate = RmsRate(lidar);
   return match;
 }

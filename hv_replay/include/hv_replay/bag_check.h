@@ -22,7 +22,7 @@ struct CheckItem {
 };
 
 struct BagCheckOptions {
-  double odometry_s = 60.0;         ///< data from which rotations are compared; 0: none
+  double odometry_s = 30.0;         ///< data from which rotations are compared; 0: none
   double start_s = 0.0;             ///< where in the bag the comparison starts
   bool compare_extrinsic = false;   ///< judge the configured T_imu_lidar
 };
