@@ -16,10 +16,12 @@ namespace {
 
 constexpr int kMaxWidth = 1600;
 constexpr int kMaxHeight = 1000;
-constexpr int kMargin = 60;
+constexpr int kMargin = 30;
 constexpr double kMaxCoordinate = 1e5;
 /// Share of columns cut off on each side of the picture as stray points.
 constexpr double kStrayShare = 0.002;
+/// Width shown around what is left, as a share of the picture.
+constexpr float kRimShare = 0.03F;
 
 std::uint64_t PackKey(std::int32_t x, std::int32_t y) {
   return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32) |
@@ -88,10 +90,15 @@ void MapPainter::FindBounds() {
     xs.push_back(static_cast<float>(KeyX(key)));
     ys.push_back(static_cast<float>(KeyY(key)));
   }
-  left_ = static_cast<int>(Quantile(xs, kStrayShare));
-  top_ = static_cast<int>(Quantile(ys, 1.0 - kStrayShare));
-  columns_ = static_cast<int>(Quantile(xs, 1.0 - kStrayShare)) - left_ + 1;
-  rows_ = top_ - static_cast<int>(Quantile(ys, kStrayShare)) + 1;
+  const float left = Quantile(xs, kStrayShare);
+  const float right = Quantile(xs, 1.0 - kStrayShare);
+  const float bottom = Quantile(ys, kStrayShare);
+  const float top = Quantile(ys, 1.0 - kStrayShare);
+  const float rim = kRimShare * std::max(right - left, top - bottom);
+  left_ = static_cast<int>(left - rim);
+  top_ = static_cast<int>(top + rim);
+  columns_ = static_cast<int>(right + rim) - left_ + 1;
+  rows_ = top_ - static_cast<int>(bottom - rim) + 1;
   pixels_per_cell_ = std::min({static_cast<double>(kMaxWidth - 2 * kMargin) / columns_,
                                static_cast<double>(kMaxHeight - 2 * kMargin) / rows_, 8.0});
 }
@@ -112,22 +119,27 @@ void MapPainter::FillGrids() {
 }
 
 cv::Mat MapPainter::Paint() const {
+  // Hue from smoothed heights: where floor and ceiling share a column, single means are noise.
+  cv::Mat smooth_count, smooth_height;
+  cv::GaussianBlur(count_, smooth_count, cv::Size(), 1.2);
+  cv::GaussianBlur(height_sum_, smooth_height, cv::Size(), 1.2);
+  const int pixels = count_.rows * count_.cols;
   std::vector<float> counts, heights;
-  for (int i = 0; i < count_.rows * count_.cols; ++i) {
-    const float count = count_.ptr<float>()[i];
-    if (count <= 0.0F) continue;
-    counts.push_back(count);
-    heights.push_back(height_sum_.ptr<float>()[i] / count);
+  for (int i = 0; i < pixels; ++i) {
+    if (count_.ptr<float>()[i] <= 0.0F) continue;
+    counts.push_back(count_.ptr<float>()[i]);
+    heights.push_back(smooth_height.ptr<float>()[i] / smooth_count.ptr<float>()[i]);
   }
-  const float full = std::log1p(std::max(Quantile(counts, 0.98), 20.0F * Quantile(counts, 0.5)));
+  const float full = std::log1p(std::max(Quantile(counts, 0.98), 12.0F * Quantile(counts, 0.5)));
   const float low = Quantile(heights, 0.02);
   const float span = std::max(Quantile(heights, 0.98) - low, 0.1F);
   cv::Mat picture(count_.size(), CV_32FC3);
-  for (int i = 0; i < count_.rows * count_.cols; ++i) {
+  for (int i = 0; i < pixels; ++i) {
     const float count = count_.ptr<float>()[i];
-    const float mean = count > 0.0F ? height_sum_.ptr<float>()[i] / count : 0.0F;
+    const float weight = smooth_count.ptr<float>()[i];
+    const float mean = weight > 0.0F ? smooth_height.ptr<float>()[i] / weight : 0.0F;
     const float density = std::min(std::log1p(count) / full, 1.0F);
-    const float brightness = count > 0.0F ? 0.12F + 0.88F * density * density : 0.0F;
+    const float brightness = count > 0.0F ? 0.15F + 0.85F * std::pow(density, 1.3F) : 0.0F;
     picture.ptr<cv::Vec3f>()[i] = Shade((mean - low) / span, brightness) * 255.0F;
   }
   cv::Mat scaled;

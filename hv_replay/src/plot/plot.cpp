@@ -106,12 +106,22 @@ std::vector<std::size_t> DrawingOrder(const std::vector<NamedTrajectory>& trajec
   return order;
 }
 
-std::string Summary(const TrajectoryError& error) {
-  char text[200];
-  std::snprintf(text, sizeof(text), "%.0f m in %.0f s, %zu poses   APE RMSE %.3f m, max %.3f m",
-                error.path_length_m, error.duration_s, error.matched.size(),
-                error.translation.rmse, error.translation.max);
+/// Short lengths in millimetres.
+std::string LengthText(double metres) {
+  char text[40];
+  if (metres < 0.1) {
+    std::snprintf(text, sizeof(text), "%.1f mm", 1e3 * metres);
+  } else {
+    std::snprintf(text, sizeof(text), "%.3f m", metres);
+  }
   return text;
+}
+
+std::string Summary(const TrajectoryError& error) {
+  char text[120];
+  std::snprintf(text, sizeof(text), "%.0f m in %.0f s, %zu poses   APE RMSE ",
+                error.path_length_m, error.duration_s, error.matched.size());
+  return text + LengthText(error.translation.rmse) + ", max " + LengthText(error.translation.max);
 }
 
 void DrawColourBar(Canvas& canvas, double top_value) {
@@ -122,10 +132,8 @@ void DrawColourBar(Canvas& canvas, double top_value) {
   }
   const TextStyle left = {12.0, plot::kFaintTextColour, TextAnchor::kRight, false};
   const TextStyle right = {12.0, plot::kFaintTextColour, TextAnchor::kLeft, false};
-  char text[40];
-  std::snprintf(text, sizeof(text), "%.3g m", top_value);
   canvas.Text({bar.left - 8.0, bar.bottom - 0.5}, "error 0", left);
-  canvas.Text({bar.right + 8.0, bar.bottom - 0.5}, text, right);
+  canvas.Text({bar.right + 8.0, bar.bottom - 0.5}, LengthText(top_value), right);
 }
 
 /// The matched poses and errors of a comparison as columns.
