@@ -47,17 +47,17 @@ struct BagReadResult {
   std::size_t clouds = 0;
   std::size_t imu_samples = 0;
   std::size_t undecodable = 0;  ///< messages whose bytes contradict their type
-  std::string error;  ///< not empty: a bag is damaged and reading ended there, one line
+  std::string error;  ///< not empty: a bag is damaged or cut off and reading ended there, one line
 };
 
 enum class ImuNeed { kRequired, kOptional, kIgnored };
 
 /// Reads point clouds and IMU samples of one or several bags in order of arrival, as if the bags
-/// were one. Not thread-safe.
+/// were one. A single bag that was cut off is read as far as it goes. Not thread-safe.
 class BagReader {
  public:
   /// Opens the bags and finds the topics. Throws InputError, naming bag and remedy, when a bag
-  /// cannot be opened, is truncated or not indexed, or when a topic is missing, ambiguous or of
+  /// cannot be opened, when one of several is cut off, or when a topic is missing, ambiguous or of
   /// another type (listing the topics that are there).
   BagReader(const std::vector<std::string>& paths, const BagTopics& topics, ImuNeed imu_need);
   ~BagReader();
@@ -76,6 +76,8 @@ class BagReader {
 
  private:
   struct Bags;
+
+  void FindTopics(const BagTopics& topics, ImuNeed imu_need);
 
   std::unique_ptr<Bags> bags_;
   std::vector<BagTopicInfo> all_topics_;
