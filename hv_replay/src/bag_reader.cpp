@@ -26,6 +26,7 @@ Time ToTime(const ros::Time& time) {
 /// Opens a bag by its index; false when it has none, or a broken one.
 bool Open(const std::string& path, rosbag::Bag& bag) {
   if (!std::filesystem::is_regular_file(path)) throw InputError(path + ": cannot be opened");
+  if (!HasSoundIndex(path)) return false;
   try {
     bag.open(path, rosbag::bagmode::Read);
     return true;

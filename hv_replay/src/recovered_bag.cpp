@@ -15,7 +15,9 @@ namespace {
 
 // Record types of the bag format 2.0 (wiki.ros.org/Bags/Format/2.0).
 constexpr char kMessageData = 0x02;
+constexpr char kBagHeader = 0x03;
 constexpr char kChunk = 0x05;
+constexpr char kChunkInfo = 0x06;
 constexpr char kConnection = 0x07;
 constexpr char kMagic[] = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kMaxHeader = 1U << 20;
@@ -101,6 +103,17 @@ class RecordFile {
     left_ -= static_cast<std::streamoff>(sizeof(magic));
     return file_.read(magic, sizeof(magic)) && std::memcmp(magic, kMagic, sizeof(magic)) == 0;
   }
+
+  bool Seek(std::uint64_t position) {
+    file_.seekg(0, std::ios::end);
+    const std::streamoff size = file_.tellg();
+    if (size < 0 || position > static_cast<std::uint64_t>(size)) return false;
+    left_ = size - static_cast<std::streamoff>(position);
+    file_.seekg(static_cast<std::streamoff>(position));
+    return static_cast<bool>(file_);
+  }
+
+  bool AtEnd() const { return left_ == 0; }
 
   /// Next record; nullopt where the file ends or is damaged.
   std::optional<Record> Next() {
@@ -194,6 +207,25 @@ std::vector<RawMessage> MessagesIn(const std::string& content, Connections& conn
 }
 
 }  // namespace
+
+bool HasSoundIndex(const std::string& path) {
+  RecordFile file(path);
+  if (!file.StartsWithMagic()) return true;
+  const std::optional<Record> header = file.Next();
+  if (!header || header->type() != kBagHeader) return false;
+  const std::uint64_t position = Number<std::uint64_t>(header->header, "index_pos").value_or(0);
+  std::uint32_t connections = 0;
+  std::uint32_t chunks = 0;
+  if (position == 0 || !file.Seek(position)) return false;
+  while (!file.AtEnd()) {
+    const std::optional<Record> record = file.Next();
+    if (!record) return false;
+    if (record->type() == kChunkInfo) ++chunks;
+    if (record->type() == kConnection && ParseFields(record->data)) ++connections;
+  }
+  return Number<std::uint32_t>(header->header, "conn_count") == connections &&
+         Number<std::uint32_t>(header->header, "chunk_count") == chunks;
+}
 
 RecoveredBag::RecoveredBag(const std::string& path) : path_(path) {
   std::map<std::string, BagTopicInfo> topics;

@@ -11,6 +11,10 @@
 
 namespace hv::replay {
 
+/// False for a bag of format 2.0 whose index is missing or damaged, which rosbag must not be given:
+/// it reads beyond its buffers then.
+bool HasSoundIndex(const std::string& path);
+
 /// Reads a bag (format 2.0) front to back without its index, as far as it is intact: for
 /// recordings that were cut off. Only plain and lz4 chunks.
 class RecoveredBag {
