@@ -19,7 +19,7 @@ sequences=(
   "workshop_walk $root/hv_sim/floor_plans/workshop.yaml walk 75"
 )
 cells=("025 0.25" "050 0.50")
-memory_sequence=campus_segway
+memory_sequence=tunnel_robot  # new ground all the way, scans of equal size
 
 usage() {
   cat <<USAGE
@@ -30,7 +30,7 @@ usage: bench_odometry.sh [options]
                    (IMU frame, TUM) and timing.csv (a column total_ms); may be repeated
   --kitti DIR      start of a KITTI odometry sequence: velodyne/, calib.txt, poses*.txt
   --threads N      threads of one scan's work (default: 1)
-  --only NAME      this sequence only, without the memory run; may be repeated
+  --only NAME      this sequence only; may be repeated
   --table-only     no runs: the table of the results that are there
   --markdown FILE  also write the table to FILE
 The programs are those of scripts/setup.sh.
@@ -124,18 +124,17 @@ run_cell() {
   slam "$result/input.yaml" "$data/$1/recording.bag" "$result"
 }
 
-# Half as many voxels as the map holds after a fifth of the run fill the table well before that.
+# The table holds what the map has gathered a little before a fifth of the run.
 run_memory() {
   local timing=$out/hv_lio/$memory_sequence/leaf050/timing.csv result=$out/memory capacity
-  [ -f "$timing" ] || return 0
   capacity=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "voxels") column = i }
-    NR > 1 { voxels[NR] = $column } END { printf "%d", voxels[int(NR / 5)] / 2 }' "$timing")
+    NR > 1 { voxels[NR] = $column } END { printf "%d", 0.9 * voxels[int(NR / 5)] }' "$timing")
   echo "bench_odometry: $memory_sequence with a table of $capacity voxels" >&2
   rm -rf "$result"
   mkdir -p "$result"
   cp "$root/config/hilti_2022.yaml" "$result/input.yaml"
   set_option "$result/input.yaml" map capacity "$capacity"
-  set_option "$result/input.yaml" map max_subdivisions "$((capacity / 2))"
+  set_option "$result/input.yaml" map max_subdivisions "$((capacity / 4))"
   slam "$result/input.yaml" "$data/$memory_sequence/recording.bag" "$result"
 }
 
@@ -165,10 +164,11 @@ for sequence in "${sequences[@]}"; do
 done
 [ -n "$found" ] || fail "no sequence is named ${only[*]}"
 if [ -n "$run" ]; then
-  ((${#only[@]} > 0)) || run_memory
+  ! wanted "$memory_sequence" || run_memory
   [ -z "$kitti" ] || run_kitti
 fi
 [ -z "$kitti" ] || table+=(--kitti "$kitti")
+! wanted "$memory_sequence" || table+=(--memory "$memory_sequence")
 
 # shellcheck disable=SC2016
 default_cell=$("$programs/hv_replay/hv_parameters" |

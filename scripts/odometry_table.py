@@ -18,7 +18,6 @@ from odometry_figures import Run, TunnelRun
 
 CELLS = {0.25: "leaf025", 0.5: "leaf050"}
 TUNNEL = "tunnel_straight_robot"
-MEMORY_SEQUENCE = "campus_segway"
 
 # Limits; a ratio is to the peer's figure.
 ERROR_RATIO = 0.8
@@ -190,13 +189,13 @@ def tunnel_section(run: TunnelRun, cell: float, report: Report) -> None:
     report.table(["straight tunnel", "measured", "limit", "reached"], rows)
 
 
-def memory_section(run: figures.MemoryRun, report: Report) -> None:
+def memory_section(sequence: str, run: figures.MemoryRun, report: Report) -> None:
     growth = run.growth_percent()
     report.text("### Memory once the table is full")
     report.table(
         ["sequence", "voxels", "full after", "then [MB]", "largest later [MB]", "growth", "limit",
          "APE RMSE [cm]", "reached"],
-        [[MEMORY_SEQUENCE, str(run.capacity),
+        [[sequence, str(run.capacity),
           f"{100.0 * run.full_at_scan / run.scans:.0f} % of the run", f"{run.full_mb:.1f}",
           f"{run.largest_mb:.1f}", f"{growth:.2f} %", f"{MEMORY_GROWTH_PERCENT:.0f} %",
           f"{100 * run.ape_m:.2f}",
@@ -258,12 +257,12 @@ def make_report(arguments: argparse.Namespace) -> Report:
                    report)
     if TUNNEL in arguments.sequence:
         tunnel_sections(arguments, report)
-    if MEMORY_SEQUENCE in arguments.sequence:
+    if arguments.memory is not None:
         memory = figures.read_memory(arguments.results / "memory",
-                                     arguments.data / MEMORY_SEQUENCE / "truth.tum",
+                                     arguments.data / arguments.memory / "truth.tum",
                                      arguments.ape)
         if memory is not None:
-            memory_section(memory, report)
+            memory_section(arguments.memory, memory, report)
     if arguments.kitti is not None:
         kitti_section(figures.read_kitti(arguments.results / "kitti", arguments.kitti), report)
     report.text(f"{report.checked - len(report.missed)} of {report.checked} limits reached.")
@@ -281,6 +280,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--peer", nargs=2, action="append", default=[], metavar=("NAME", "DIR"))
     parser.add_argument("--default-cell", type=float, required=True)
     parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--memory", metavar="SEQUENCE", help="that of the run with a small table")
     parser.add_argument("--kitti", type=Path)
     parser.add_argument("--markdown", type=Path)
     return parser.parse_args()
