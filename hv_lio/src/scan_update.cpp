@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -32,6 +33,10 @@ void UpdateConfig::Describe(ConfigVisitor& visitor) {
                 "directions in which a Gaussian is wider than this constrain nothing [m]");
   visitor.Field("information_scale", information_scale,
                 "share of the residuals that count as independent");
+  visitor.Field("map_sigma_m", map_sigma_m,
+                "error of the map that all residuals of a scan share, translation [m]");
+  visitor.Field("map_sigma_rad", map_sigma_rad,
+                "the same for rotation; larger values let gravity level the map [rad]");
   visitor.Field("min_residuals", min_residuals, "fewest residuals for an update");
   visitor.Field("degenerate_sigma_m", degenerate_sigma_m,
                 "a direction that the scan alone leaves less certain than this is degenerate [m]");
@@ -52,6 +57,8 @@ void UpdateConfig::Validate(ConfigProblems& problems) const {
   problems.Require(gaussian_sigma_m > 0.0, "update.gaussian_sigma_m", "must be positive");
   problems.Require(information_scale > 0.0 && information_scale <= 1.0,
                    "update.information_scale", "must be positive and at most 1");
+  problems.Require(map_sigma_m >= 0.0, "update.map_sigma_m", "must not be negative");
+  problems.Require(map_sigma_rad >= 0.0, "update.map_sigma_rad", "must not be negative");
   problems.Require(min_residuals >= 6, "update.min_residuals", "must be at least 6");
   problems.Require(degenerate_sigma_m > 0.0, "update.degenerate_sigma_m", "must be positive");
   problems.Require(degenerate_sigma_rad > 0.0, "update.degenerate_sigma_rad",
@@ -172,6 +179,17 @@ void ScanUpdate::RemoveDegenerate(const UpdateSummary& summary, Normal& normal) 
   normal.gradient = keep * normal.gradient;
 }
 
+void ScanUpdate::AddMapNoise(Normal& normal) const {
+  Vector6d variance;
+  variance.head<3>().setConstant(config_.map_sigma_m * config_.map_sigma_m);
+  variance.tail<3>().setConstant(config_.map_sigma_rad * config_.map_sigma_rad);
+  const Matrix6d widened = Matrix6d::Identity() + normal.information * variance.asDiagonal();
+  const Eigen::PartialPivLU<Matrix6d> solver(widened);
+  const Matrix6d information = solver.solve(normal.information);
+  normal.information = 0.5 * (information + information.transpose());
+  normal.gradient = solver.solve(normal.gradient).eval();
+}
+
 UpdateSummary ScanUpdate::Apply(const std::vector<SurfaceCell>& cells, const VoxelMap& map,
                                 NavState& state, ErrorMatrix& covariance) const {
   UpdateSummary summary;
@@ -185,6 +203,7 @@ UpdateSummary ScanUpdate::Apply(const std::vector<SurfaceCell>& cells, const Vox
     if (normal.count < static_cast<std::size_t>(config_.min_residuals)) return UpdateSummary();
     FindDegenerate(normal, summary);
     RemoveDegenerate(summary, normal);
+    AddMapNoise(normal);
     const ErrorVector deviation = current.Minus(prior);
     const ErrorMatrix to_prior = current.MinusJacobian(prior);
     information = to_prior.transpose() * prior_information * to_prior;

@@ -74,7 +74,9 @@ double SurfaceFeature::PlaneVarianceAt(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d offset = point - center;
   const double first = axes.col(0).dot(offset);
   const double second = axes.col(1).dot(offset);
-  return offset_variance * (1.0 + first * first / variance[0] + second * second / variance[1]);
+  const double tilt = offset_variance + variance[2] / kIndependentPatches;
+  return offset_variance +
+         tilt * (first * first / variance[0] + second * second / variance[1]);
 }
 
 Eigen::Matrix3d SurfaceFeature::NormalCovariance() const {

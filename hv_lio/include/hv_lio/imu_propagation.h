@@ -10,8 +10,8 @@ namespace hv::lio {
 
 /// Noise of the IMU as the filter assumes it, and where the sensor saturates.
 struct ImuNoiseConfig {
-  double gyro_noise = 1e-3;     // rad/s/sqrt(Hz)
-  double accel_noise = 1e-2;    // m/s^2/sqrt(Hz)
+  double gyro_noise = 5e-4;     // rad/s/sqrt(Hz)
+  double accel_noise = 5e-3;    // m/s^2/sqrt(Hz)
   double gyro_walk = 1e-5;      // rad/s^2/sqrt(Hz)
   double accel_walk = 1e-4;     // m/s^3/sqrt(Hz)
   double gyro_limit = 35.0;     // rad/s

@@ -15,7 +15,7 @@ namespace hv::lio {
 struct PreprocessConfig {
   double cell_size_m = 0.5;
   double range_sigma_m = 0.015;
-  double bearing_sigma_rad = 1e-3;
+  double bearing_sigma_rad = 2e-4;
   int max_cells = 20000;
 
   void Describe(ConfigVisitor& visitor);

@@ -15,10 +15,12 @@ struct UpdateConfig {
   double convergence = 1e-3;
   double gate_sigmas = 4.0;
   double huber_sigmas = 1.5;
-  double model_sigma_m = 0.01;
+  double model_sigma_m = 0.02;
   double gaussian_weight = 0.5;
   double gaussian_sigma_m = 0.035;
-  double information_scale = 0.1;
+  double information_scale = 1.0;
+  double map_sigma_m = 0.0;
+  double map_sigma_rad = 1e-3;
   int min_residuals = 30;
   double degenerate_sigma_m = 0.1;
   double degenerate_sigma_rad = 0.02;
@@ -49,6 +51,7 @@ class ScanUpdate {
   void AddCell(const SurfaceCell& cell, const SurfaceFeature& feature, const Pose& T_odom_imu,
                const Matrix6d& pose_covariance, Normal& normal) const;
   void FindDegenerate(const Normal& normal, UpdateSummary& summary) const;
+  void AddMapNoise(Normal& normal) const;
   static void RemoveDegenerate(const UpdateSummary& summary, Normal& normal);
 
   UpdateConfig config_;
