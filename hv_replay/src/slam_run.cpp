@@ -51,6 +51,28 @@ ImuNeed NeedOf(const lio::SystemConfig& config) {
   return config.odometry.use_imu ? ImuNeed::kRequired : ImuNeed::kIgnored;
 }
 
+std::string TimingRow(const lio::ScanResult& result) {
+  const lio::ScanTiming& timing = result.timing;
+  char row[200];
+  std::snprintf(row, sizeof(row), "%s,%.4f,%.4f,%.4f,%.4f,%zu,%.2f",
+                ToString(result.estimate.stamp).c_str(), timing.preprocess_ms, timing.update_ms,
+                timing.map_ms, timing.total_ms(), result.voxels, ResidentMemoryMb());
+  return row;
+}
+
+std::string CovarianceRow(const lio::ScanResult& result) {
+  std::string row = ToString(result.estimate.stamp);
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < (i < 3 ? 3 : 6); ++j) {
+      char cell[40];
+      std::snprintf(cell, sizeof(cell), ",%.6e", result.estimate.pose_covariance(i, j));
+      row += cell;
+    }
+  }
+  return row + "," + std::to_string(result.update.degenerate_translation.size()) + "," +
+         std::to_string(result.update.degenerate_rotation.size());
+}
+
 }  // namespace
 
 double ResidentMemoryMb() {
@@ -64,18 +86,16 @@ double ResidentMemoryMb() {
   return read == 2 ? page_mb * static_cast<double>(resident_pages) : 0.0;
 }
 
-TimingLog::TimingLog(const std::string& path) : file_(std::fopen(path.c_str(), "w")) {
+CsvLog::CsvLog(const std::string& path, const std::string& header)
+    : file_(std::fopen(path.c_str(), "w")) {
   if (file_ == nullptr) throw InputError(path + ": cannot be written");
-  std::fputs("stamp,preprocess_ms,update_ms,map_ms,total_ms,voxels,rss_mb\n", file_);
+  Append(header);
 }
 
-TimingLog::~TimingLog() { std::fclose(file_); }
+CsvLog::~CsvLog() { std::fclose(file_); }
 
-void TimingLog::Append(const lio::ScanResult& result) {
-  const lio::ScanTiming& timing = result.timing;
-  std::fprintf(file_, "%s,%.4f,%.4f,%.4f,%.4f,%zu,%.2f\n",
-               ToString(result.estimate.stamp).c_str(), timing.preprocess_ms, timing.update_ms,
-               timing.map_ms, timing.total_ms(), result.voxels, ResidentMemoryMb());
+void CsvLog::Append(const std::string& row) {
+  std::fprintf(file_, "%s\n", row.c_str());
   std::fflush(file_);
 }
 
@@ -87,7 +107,10 @@ SlamRun::SlamRun(const lio::SystemConfig& config, const std::vector<std::string>
       reader_(bags, {config.input.points_topic, config.input.imu_topic}, NeedOf(config)),
       decoder_(config.points),
       pipeline_(config.odometry),
-      timing_(out_dir + "/timing.csv") {}
+      timing_(out_dir + "/timing.csv", "stamp,preprocess_ms,update_ms,map_ms,total_ms,voxels,rss_mb"),
+      covariance_(out_dir + "/covariance.csv",
+                  "stamp,xx,xy,xz,yy,yz,zz,rxrx,rxry,rxrz,ryry,ryrz,rzrz,"
+                  "degenerate_translation,degenerate_rotation") {}
 
 SlamRunSummary SlamRun::Run() {
   WriteText(out_dir_ + "/config.yaml", ToYaml(config_));
@@ -139,7 +162,8 @@ void SlamRun::Take(const lio::ScanResult& result) {
   ++summary_.scans_by_status[lio::ToString(result.status)];
   const bool tracking = result.status == lio::ScanStatus::kTracking;
   if (!tracking && result.status != lio::ScanStatus::kImuOnly) return;
-  timing_.Append(result);
+  timing_.Append(TimingRow(result));
+  covariance_.Append(CovarianceRow(result));
   odometry_.Append(result.estimate.stamp, result.estimate.T_odom_imu);
   if (!tracking) return;
   summary_.total_ms.push_back(result.timing.total_ms());

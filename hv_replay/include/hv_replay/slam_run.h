@@ -16,17 +16,16 @@
 
 namespace hv::replay {
 
-/// Writes `timing.csv`: one row a scan, flushed as it goes so that an interrupted run keeps its
-/// rows.
-class TimingLog {
+/// A CSV file that is flushed row by row, so that an interrupted run keeps its rows.
+class CsvLog {
  public:
-  /// Throws InputError when the file cannot be written.
-  explicit TimingLog(const std::string& path);
-  ~TimingLog();
-  TimingLog(const TimingLog&) = delete;
-  TimingLog& operator=(const TimingLog&) = delete;
+  /// Writes the header. Throws InputError when the file cannot be written.
+  CsvLog(const std::string& path, const std::string& header);
+  ~CsvLog();
+  CsvLog(const CsvLog&) = delete;
+  CsvLog& operator=(const CsvLog&) = delete;
 
-  void Append(const lio::ScanResult& result);
+  void Append(const std::string& row);
 
  private:
   std::FILE* file_;
@@ -56,8 +55,9 @@ class SlamRun {
   SlamRun(const lio::SystemConfig& config, const std::vector<std::string>& bags,
           const std::string& out_dir, bool pictures);
 
-  /// Runs to the end of the bags and writes odometry.tum, timing.csv, summary.json, config.yaml and
-  /// the pictures. A damaged bag ends the run early: what was finished is written,
+  /// Runs to the end of the bags and writes odometry.tum, timing.csv (a row a scan), covariance.csv
+  /// (position and rotation covariance in odom axes, number of degenerate directions),
+  /// summary.json, config.yaml and the pictures. A damaged bag ends the run early: what was finished is written,
   /// and the summary's `error` says why.
   SlamRunSummary Run();
 
@@ -75,7 +75,8 @@ class SlamRun {
   BagReader reader_;
   PointCloudDecoder decoder_;
   lio::Pipeline pipeline_;
-  TimingLog timing_;
+  CsvLog timing_;
+  CsvLog covariance_;
   Trajectory odometry_;
   MapPicture picture_;
   SlamRunSummary summary_;
