@@ -126,7 +126,8 @@ class Reader : public ConfigVisitor {
     for (const auto& entry : node_) {
       const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "(not a text)";
       if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
-        const std::string hint = known_.empty() ? "" : "; nearest is '" + Nearest(key, known_) + "'";
+        const std::string hint =
+            known_.empty() ? "" : "; nearest is '" + Nearest(key, known_) + "'";
         Complain(entry.first, key, "unknown key" + hint);
       } else if (std::find(seen.begin(), seen.end(), key) != seen.end()) {
         Complain(entry.first, key, "given twice");
@@ -278,9 +279,9 @@ class TableWriter : public ConfigVisitor {
 };
 
 std::string SyntaxError(const std::string& source, const YAML::Exception& error) {
-  const std::string line =
-      error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1) + ":" +
-                                      std::to_string(error.mark.column + 1);
+  const std::string line = error.mark.is_null() ? ""
+                                                : ":" + std::to_string(error.mark.line + 1) + ":" +
+                                                      std::to_string(error.mark.column + 1);
   return source + line + ": not valid YAML: " + error.msg;
 }
 

@@ -66,8 +66,8 @@ T Load(const std::uint8_t* bytes) {
 const PointFieldView* FindField(const PointCloudView& cloud, const std::string& name) {
   for (const PointFieldView& field : cloud.fields) {
     const std::size_t size = SizeOf(field.type);
-    const bool inside = size > 0 && field.offset <= cloud.point_step &&
-                        size <= cloud.point_step - field.offset;
+    const bool inside =
+        size > 0 && field.offset <= cloud.point_step && size <= cloud.point_step - field.offset;
     if (field.name == name && inside) return &field;
   }
   return nullptr;
@@ -236,7 +236,8 @@ void PointCloudDecoder::Workspace::ReadRings(const PointCloudView& cloud,
                                              std::vector<Point>& points) const {
   const PointFieldView* field = FindAnyField(cloud, {"ring", "channel", "line"});
   if (field == nullptr) return;
-  ForEachValue(*field, kept, [&points](std::size_t i, auto value) { points[i].ring = ToRing(value); });
+  ForEachValue(*field, kept,
+               [&points](std::size_t i, auto value) { points[i].ring = ToRing(value); });
 }
 
 void PointCloudDecoder::Workspace::Thin(bool has_ring, int stride, std::vector<Point>& points) {

@@ -165,8 +165,8 @@ ResolvedTimes ResolvePointTimes(const PointTimes& times, Time header, const Poin
   if (layout.absolute && !layout.other_clock) {
     resolved.zero = *middle_time;
   } else {
-    const double to_count = static_cast<double>(
-        (times.base + static_cast<long double>(middle)) * static_cast<long double>(layout.unit_s));
+    const double to_count = static_cast<double>((times.base + static_cast<long double>(middle)) *
+                                                static_cast<long double>(layout.unit_s));
     if (!layout.other_clock) {
       for (double& seconds : resolved.seconds) seconds += to_count;
     }
@@ -203,8 +203,8 @@ ResolvedTimes TimesFromAzimuth(const std::vector<float>& azimuth, Time header,
 
 std::string PointTimeLayout::ToString() const {
   if (deskewed) return "point time: none, clouds are taken as already deskewed at the header stamp";
-  const std::string header = stamp_at_end ? "header stamp at the last point"
-                                          : "header stamp at the first point";
+  const std::string header =
+      stamp_at_end ? "header stamp at the last point" : "header stamp at the first point";
   if (from_azimuth) {
     return "WARNING point time: no usable time field, REBUILT FROM AZIMUTH (less accurate), " +
            header;

@@ -16,8 +16,8 @@ struct PointTimes {
 
 /// Where a cloud's times start and which of its points have usable times.
 struct ResolvedTimes {
-  Time zero;                  ///< instant that `seconds` count from
-  std::vector<char> usable;   ///< per point
+  Time zero;                 ///< instant that `seconds` count from
+  std::vector<char> usable;  ///< per point
   std::vector<double> seconds;
 };
 

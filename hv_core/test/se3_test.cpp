@@ -19,8 +19,8 @@ std::vector<Vector6d> TangentVectors() {
   std::mt19937 random(11);
   std::normal_distribution<double> normal;
   std::vector<Vector6d> vectors = {Vector6d::Zero()};
-  for (const double angle : {0.0, 1e-12, 1e-8, 9.9e-5, 1.01e-4, 1e-3, 9.9e-3, 1.01e-2, 0.1, 1.0, 2.5,
-                             kPi - 1e-3, kPi - 1e-6}) {
+  for (const double angle : {0.0, 1e-12, 1e-8, 9.9e-5, 1.01e-4, 1e-3, 9.9e-3, 1.01e-2, 0.1, 1.0,
+                             2.5, kPi - 1e-3, kPi - 1e-6}) {
     for (const double length : {0.0, 1e-9, 1.0, 10.0}) {
       Vector6d xi;
       for (int k = 0; k < 6; ++k) xi[k] = normal(random);
@@ -53,8 +53,7 @@ TEST(Se3, ExpIsTheLimitOfSmallSteps) {
 
 TEST(Se3, LogInvertsExp) {
   for (const Vector6d& xi : TangentVectors()) {
-    EXPECT_LT((se3::Log(se3::Exp(xi)) - xi).norm(), 1e-13 + 1e-8 * xi.norm())
-        << xi.transpose();
+    EXPECT_LT((se3::Log(se3::Exp(xi)) - xi).norm(), 1e-13 + 1e-8 * xi.norm()) << xi.transpose();
   }
 }
 
@@ -86,8 +85,7 @@ Matrix6d NumericRightJacobian(const Vector6d& xi) {
 
 TEST(Se3, RightJacobianAgreesWithNumericOne) {
   for (const Vector6d& xi : TangentVectors()) {
-    EXPECT_LT((se3::RightJacobian(xi) - NumericRightJacobian(xi)).norm(), 2e-8)
-        << xi.transpose();
+    EXPECT_LT((se3::RightJacobian(xi) - NumericRightJacobian(xi)).norm(), 2e-8) << xi.transpose();
   }
 }
 

@@ -55,8 +55,8 @@ TEST(Trajectory, AppendRefusesStampsThatDoNotIncrease) {
 }
 
 TEST(Trajectory, InterpolatesPositionAndRotation) {
-  const Trajectory trajectory({{Time::FromSeconds(10.0), PoseAt(1.0, 3.0)},
-                               {Time::FromSeconds(12.0), PoseAt(3.0, -3.0)}});
+  const Trajectory trajectory(
+      {{Time::FromSeconds(10.0), PoseAt(1.0, 3.0)}, {Time::FromSeconds(12.0), PoseAt(3.0, -3.0)}});
   const std::optional<Pose> pose = trajectory.Interpolate(Time::FromSeconds(10.5));
   ASSERT_TRUE(pose.has_value());
   EXPECT_NEAR(pose->translation().x(), 1.5, 1e-12);
@@ -123,8 +123,8 @@ TEST_F(TrajectoryFile, ReadsCommentsBlanksCommasAndWindowsLines) {
 
 TEST_F(TrajectoryFile, MalformedLinesAreNamed) {
   const std::string good = "1 0 0 0 0 0 0 1\n";
-  const char* bad_lines[] = {"2 0 0 0 0 0 0",       "2 0 0 0 0 0 0 1 9", "x 0 0 0 0 0 0 1",
-                             "2 nan 0 0 0 0 0 1",   "2 0 0 0 0 0 0 0",   "2 0 0 0 0 0 0 nan",
+  const char* bad_lines[] = {"2 0 0 0 0 0 0",       "2 0 0 0 0 0 0 1 9",   "x 0 0 0 0 0 0 1",
+                             "2 nan 0 0 0 0 0 1",   "2 0 0 0 0 0 0 0",     "2 0 0 0 0 0 0 nan",
                              "2 0 0 inf 0 0 0 1",   "1e300 0 0 0 0 0 0 1", "2 0 a 0 0 0 0 1",
                              "2 1e999 0 0 0 0 0 1", "2 0 0 0 9 9 9 9"};
   for (const char* line : bad_lines) {

@@ -139,8 +139,8 @@ void Judge::JudgePointTime() {
 
 void Judge::JudgeImuRate() {
   if (check_.imu.rate_hz < 80.0) {
-    Warn("imu", Format("%.0f Hz is slow; 100 Hz or more deskews fast motion better",
-                       check_.imu.rate_hz));
+    Warn("imu",
+         Format("%.0f Hz is slow; 100 Hz or more deskews fast motion better", check_.imu.rate_hz));
   }
   const ImuFigures& readings = check_.readings;
   if (readings.not_finite + readings.all_zero > 0) {
@@ -156,7 +156,8 @@ void Judge::JudgeAcceleration() {
     Add(CheckLevel::kError, "gravity",
         Format("acceleration at quiet moments is %.3f, neither 9.81 m/s^2 nor 1 g", norm));
   } else if (check_.readings.in_g) {
-    Warn("gravity", Format("%.3f: the accelerometer reads g, not m/s^2 (hv_lio converts it)", norm));
+    Warn("gravity",
+         Format("%.3f: the accelerometer reads g, not m/s^2 (hv_lio converts it)", norm));
   } else {
     Good("gravity", Format("%.3f m/s^2", norm));
   }
@@ -164,8 +165,8 @@ void Judge::JudgeAcceleration() {
 
 void Judge::JudgeOverlap() {
   if (check_.covered_share > 0.9) {
-    Good("overlap", Format("%.0f %% of the scans lie within the IMU's stamps",
-                           100.0 * check_.covered_share));
+    Good("overlap",
+         Format("%.0f %% of the scans lie within the IMU's stamps", 100.0 * check_.covered_share));
     return;
   }
   Add(check_.covered_share < 0.1 ? CheckLevel::kError : CheckLevel::kWarning, "overlap",
@@ -203,9 +204,8 @@ void Judge::JudgeOffset() {
     return;
   }
   const double rest = match->offset_s - config_.odometry.lidar_time_offset_s;
-  const std::string text =
-      Format("add %+.1f ms to LiDAR stamps (correlation %.3f over %zu scans)",
-             1e3 * match->offset_s, match->correlation, match->steps);
+  const std::string text = Format("add %+.1f ms to LiDAR stamps (correlation %.3f over %zu scans)",
+                                  1e3 * match->offset_s, match->correlation, match->steps);
   if (std::abs(rest) <= kTolerableOffset) {
     Good("time offset", text);
   } else {
@@ -235,9 +235,11 @@ void Judge::JudgeExtrinsic() {
   if (direct > 0.98) {
     Good("extrinsic", "configured rotation fits, " + off + "; " + measured);
   } else if (inverse > 0.98) {
-    Add(CheckLevel::kError, "extrinsic", "configured rotation " + off +
-                                             ": inverse given? T_imu_lidar turns LiDAR into IMU "
-                                             "coordinates; " + measured);
+    Add(CheckLevel::kError, "extrinsic",
+        "configured rotation " + off +
+            ": inverse given? T_imu_lidar turns LiDAR into IMU "
+            "coordinates; " +
+            measured);
   } else {
     Add(direct < 0.9 ? CheckLevel::kError : CheckLevel::kWarning, "extrinsic",
         "configured rotation " + off + "; " + measured);

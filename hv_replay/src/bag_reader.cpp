@@ -200,13 +200,13 @@ BagReader::BagReader(const std::vector<std::string>& paths, const BagTopics& top
 void BagReader::FindTopics(const BagTopics& topics, ImuNeed imu_need) {
   topics_.points = FindTopic(topics.points, kPointsType, all_topics_);
   if (topics_.points.empty()) {
-    throw InputError(std::string("no ") + kPointsType + " in the bag; topics are: " +
-                     List(all_topics_));
+    throw InputError(std::string("no ") + kPointsType +
+                     " in the bag; topics are: " + List(all_topics_));
   }
   if (imu_need != ImuNeed::kIgnored) topics_.imu = FindTopic(topics.imu, kImuType, all_topics_);
   if (imu_need == ImuNeed::kRequired && topics_.imu.empty()) {
-    throw InputError(std::string("no ") + kImuType + " in the bag; topics are: " +
-                     List(all_topics_));
+    throw InputError(std::string("no ") + kImuType +
+                     " in the bag; topics are: " + List(all_topics_));
   }
 }
 

@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t kPointStep = 24;
 
 ros::Time ToRos(Time time) {
-  return ros::Time().fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(
-      time.nanoseconds(), 0)));
+  return ros::Time().fromNSec(
+      static_cast<std::uint64_t>(std::max<std::int64_t>(time.nanoseconds(), 0)));
 }
 
 sensor_msgs::PointField Field(const char* name, std::uint32_t offset, std::uint8_t type) {
@@ -40,9 +40,10 @@ sensor_msgs::PointCloud2 ToMessage(const Scan& scan) {
   sensor_msgs::PointCloud2 cloud;
   cloud.header.stamp = ToRos(scan.stamp);
   cloud.header.frame_id = "velodyne";
-  cloud.fields = {Field("x", 0, PointField::FLOAT32),          Field("y", 4, PointField::FLOAT32),
-                  Field("z", 8, PointField::FLOAT32),          Field("intensity", 12, PointField::FLOAT32),
-                  Field("time", 16, PointField::FLOAT32),      Field("ring", 20, PointField::UINT16)};
+  cloud.fields = {
+      Field("x", 0, PointField::FLOAT32),     Field("y", 4, PointField::FLOAT32),
+      Field("z", 8, PointField::FLOAT32),     Field("intensity", 12, PointField::FLOAT32),
+      Field("time", 16, PointField::FLOAT32), Field("ring", 20, PointField::UINT16)};
   cloud.width = static_cast<std::uint32_t>(scan.points.size());
   cloud.height = 1;
   cloud.point_step = kPointStep;
@@ -132,7 +133,8 @@ std::optional<nclt::Packet> ReadSync(const fs::path& path) {
   std::int64_t microseconds = 0;
   const std::string stem = path.stem().string();
   if (stem.empty() || stem.size() > 16 ||
-      !std::all_of(stem.begin(), stem.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
+      !std::all_of(stem.begin(), stem.end(),
+                   [](unsigned char c) { return std::isdigit(c) != 0; })) {
     return std::nullopt;
   }
   microseconds = std::stoll(stem);

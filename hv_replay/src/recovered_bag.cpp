@@ -200,9 +200,8 @@ std::vector<RawMessage> MessagesIn(const std::string& content, Connections& conn
     }
     cursor.at += *data_length;
   }
-  std::stable_sort(messages.begin(), messages.end(), [](const RawMessage& a, const RawMessage& b) {
-    return a.arrival < b.arrival;
-  });
+  std::stable_sort(messages.begin(), messages.end(),
+                   [](const RawMessage& a, const RawMessage& b) { return a.arrival < b.arrival; });
   return messages;
 }
 

@@ -174,9 +174,8 @@ std::optional<RotationMatch> MatchRotations(const std::vector<RotationStep>& lid
   if (match.steps < kMinSteps) return std::nullopt;
   for (int i = 0; i < kTrimmings; ++i) {
     const std::vector<RotationStep> consistent = WithoutOutliers(lidar, integral, match);
-    const RotationMatch refined =
-        Search(consistent, integral, match.offset_s - 2.0 * kCoarseStep,
-               match.offset_s + 2.0 * kCoarseStep, kFineStep);
+    const RotationMatch refined = Search(consistent, integral, match.offset_s - 2.0 * kCoarseStep,
+                                         match.offset_s + 2.0 * kCoarseStep, kFineStep);
     if (refined.steps < kMinSteps) break;
     match = refined;
   }

@@ -35,10 +35,9 @@ std::vector<RotationStep> StepsOf(const std::vector<StampedPose>& poses,
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const double duration = poses[i].stamp - poses[i - 1].stamp;
     if (duration <= 0.0 || duration > 0.5) continue;
-    const Eigen::Matrix3d turned =
-        poses[i - 1].pose.linear().transpose() * poses[i].pose.linear();
-    steps.push_back({poses[i - 1].stamp, poses[i].stamp,
-                     R_pose_lidar.transpose() * so3::Log(turned)});
+    const Eigen::Matrix3d turned = poses[i - 1].pose.linear().transpose() * poses[i].pose.linear();
+    steps.push_back(
+        {poses[i - 1].stamp, poses[i].stamp, R_pose_lidar.transpose() * so3::Log(turned)});
   }
   return steps;
 }
@@ -96,8 +95,7 @@ std::vector<RotationStep> StepsWithGyro(const std::vector<Scan>& scans,
 std::optional<RotationMatch> MeasureRotation(const std::vector<Scan>& scans,
                                              const std::vector<ImuSample>& samples,
                                              const lio::LioConfig& config) {
-  std::optional<RotationMatch> match =
-      MatchRotations(StepsWithoutDeskew(scans, config), samples);
+  std::optional<RotationMatch> match = MatchRotations(StepsWithoutDeskew(scans, config), samples);
   if (!match || match->correlation < kUsableCorrelation) return match;
   for (int i = 0; i < kMaxRefinements; ++i) {
     const std::optional<RotationMatch> refined =

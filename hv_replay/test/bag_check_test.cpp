@@ -138,9 +138,8 @@ class BagCheckTest : public testing::Test {
 
   static std::string Report(const BagCheck& check) { return CheckReport(check, false); }
 
-  const std::string path_ =
-      testing::TempDir() + "/hv_" +
-      testing::UnitTest::GetInstance()->current_test_info()->name() + ".bag";
+  const std::string path_ = testing::TempDir() + "/hv_" +
+                            testing::UnitTest::GetInstance()->current_test_info()->name() + ".bag";
 };
 
 TEST_F(BagCheckTest, SoundBagHasNothingButGoodFindings) {

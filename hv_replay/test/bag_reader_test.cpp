@@ -218,8 +218,10 @@ TEST_F(BagReaderTest, CutOffBagIsReadAsFarAsItGoes) {
     };
     const BagReadResult result = reader.Read(handlers, "test");
     EXPECT_EQ(result.error.find('\n'), std::string::npos);
-    EXPECT_NE(result.error.find("the bag was cut off after " + std::to_string(result.clouds) +
-                                " scans"), std::string::npos) << result.error;
+    EXPECT_NE(
+        result.error.find("the bag was cut off after " + std::to_string(result.clouds) + " scans"),
+        std::string::npos)
+        << result.error;
     EXPECT_GE(result.clouds, last);
     last = result.clouds;
   }

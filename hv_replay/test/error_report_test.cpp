@@ -25,7 +25,8 @@ TEST(ErrorTable, HoldsTheFiguresWithoutColourCodesInAPipe) {
   const std::string table = ErrorTable(SmallError(), Alignment::kNone, false);
   EXPECT_NE(table.find("matched 30 poses"), std::string::npos) << table;
   EXPECT_NE(table.find("APE [m]                 0.2500    0.2500    0.2500    0.2500    0.0000"),
-            std::string::npos) << table;
+            std::string::npos)
+      << table;
   EXPECT_NE(table.find("RPE 10 m [m]          path too short"), std::string::npos) << table;
   EXPECT_EQ(table.find('\033'), std::string::npos);
   EXPECT_NE(ErrorTable(SmallError(), Alignment::kNone, true).find('\033'), std::string::npos);

@@ -52,8 +52,10 @@ double Elevation(int laser) {
 std::string FiringBytes(double azimuth, double vertical_shift = 0.0) {
   std::string bytes;
   for (int laser = 0; laser < 32; ++laser) {
-    PutHit(bytes, Eigen::Vector3d(20.0 * std::cos(azimuth), 20.0 * std::sin(azimuth),
-                                  20.0 * std::tan(Elevation(laser)) - vertical_shift), laser);
+    PutHit(bytes,
+           Eigen::Vector3d(20.0 * std::cos(azimuth), 20.0 * std::sin(azimuth),
+                           20.0 * std::tan(Elevation(laser)) - vertical_shift),
+           laser);
   }
   return bytes;
 }
@@ -328,8 +330,8 @@ TEST_F(NcltSession, SyncFilesGiveTimesFromAzimuth) {
   const NcltConversion conversion = ConvertNclt(folder_.string(), Path("out.bag"));
   EXPECT_EQ(conversion.sweeps, 2U);
   EXPECT_EQ(conversion.problems.size(), 2U);
-  Packet file = {Time(), DecodeHits(reinterpret_cast<const std::uint8_t*>(hits.data()),
-                                    hits.size())};
+  Packet file = {Time(),
+                 DecodeHits(reinterpret_cast<const std::uint8_t*>(hits.data()), hits.size())};
   const Scan sweep = SweepFromSync(file);
   EXPECT_NEAR(sweep.points[500 * 32].time, 0.05, 1e-4);
   EXPECT_NEAR(sweep.duration, 0.1, 2e-4);

@@ -133,7 +133,8 @@ TEST_F(PlotFile, MapShowsWallsBrighterThanFloor) {
   map.Save(Trajectory(), "", path_);
   const cv::Mat image = cv::imread(path_);
   const auto brightness = [&image](double down) {
-    const cv::Vec3b pixel = image.at<cv::Vec3b>(static_cast<int>(down * image.rows), image.cols / 2);
+    const cv::Vec3b pixel =
+        image.at<cv::Vec3b>(static_cast<int>(down * image.rows), image.cols / 2);
     return pixel[0] + pixel[1] + pixel[2];
   };
   EXPECT_GT(brightness(0.498), brightness(0.3) + 150);

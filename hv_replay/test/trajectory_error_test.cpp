@@ -130,7 +130,8 @@ TEST(TrajectoryError, NoiseComesBackAsItsRmse) {
 
 TEST(TrajectoryError, Se3AlignmentIsOptimal) {
   const Trajectory estimate = Noisy(Truth(), Eigen::Vector3d(0.1, 0.1, 0.1));
-  const double best = CompareTrajectories(Truth(), estimate, With(Alignment::kSe3)).translation.rmse;
+  const double best =
+      CompareTrajectories(Truth(), estimate, With(Alignment::kSe3)).translation.rmse;
   for (int axis = 0; axis < 6; ++axis) {
     for (const double step : {-1e-3, 1e-3}) {
       Vector6d xi = Vector6d::Zero();
@@ -149,8 +150,8 @@ TEST(TrajectoryError, RotationErrorIsTheAngle) {
   const double angle = 2.0 * kPi / 180.0;
   const Trajectory truth = Truth();
   for (const StampedPose& pose : truth.poses()) {
-    turned.Append(pose.stamp, pose.pose * MakePose(RotationFromRpy(0, 0, angle),
-                                                   Eigen::Vector3d::Zero()));
+    turned.Append(pose.stamp,
+                  pose.pose * MakePose(RotationFromRpy(0, 0, angle), Eigen::Vector3d::Zero()));
   }
   const TrajectoryError error = CompareTrajectories(Truth(), turned, With(Alignment::kSe3));
   EXPECT_NEAR(error.rotation.mean, 2.0, 1e-6);

@@ -26,17 +26,16 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--reference", arguments.reference, "true trajectory (TUM)")->required();
   app.add_option("--estimate", arguments.estimate, "trajectory to judge (TUM)")->required();
   app.add_option("--align", arguments.align, "se3, yaw or none")->capture_default_str();
-  app.add_option("--max-gap", arguments.options.max_gap_s,
-                 "longest gap to interpolate across [s]")->capture_default_str();
+  app.add_option("--max-gap", arguments.options.max_gap_s, "longest gap to interpolate across [s]")
+      ->capture_default_str();
   app.add_option("--plot", arguments.plot, "draw paths and errors into this picture (.png)");
   app.add_flag("--json", arguments.json, "print one JSON object");
 }
 
 int Compare(Arguments& arguments) {
   arguments.options.alignment = hv::replay::ParseAlignment(arguments.align);
-  const hv::replay::TrajectoryError error =
-      hv::replay::CompareTrajectories(hv::ReadTum(arguments.reference),
-                                      hv::ReadTum(arguments.estimate), arguments.options);
+  const hv::replay::TrajectoryError error = hv::replay::CompareTrajectories(
+      hv::ReadTum(arguments.reference), hv::ReadTum(arguments.estimate), arguments.options);
   if (!arguments.plot.empty()) {
     const std::string name = std::filesystem::path(arguments.estimate).filename().string();
     hv::replay::PlotError(error, name, arguments.plot);

@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <yaml-cpp/yaml.h>
+#include <CLI/CLI.hpp>
 
 #include "hv_core/config.h"
 #include "hv_replay/bag_check.h"
@@ -40,13 +40,13 @@ int Check(Arguments& arguments) {
     topics = {config.input.points_topic, config.input.imu_topic};
     arguments.options.compare_extrinsic = true;
   }
-  const hv::replay::ImuNeed need = config.odometry.use_imu ? hv::replay::ImuNeed::kOptional
-                                                           : hv::replay::ImuNeed::kIgnored;
+  const hv::replay::ImuNeed need =
+      config.odometry.use_imu ? hv::replay::ImuNeed::kOptional : hv::replay::ImuNeed::kIgnored;
   hv::replay::BagReader reader(arguments.bags, topics, need);
   const hv::replay::BagCheck check = hv::replay::CheckBag(reader, config, arguments.options);
-  const std::string text =
-      arguments.json ? hv::replay::CheckJson(check).ToString() + "\n"
-                     : hv::replay::CheckReport(check, hv::replay::ColourOutput());
+  const std::string text = arguments.json
+                               ? hv::replay::CheckJson(check).ToString() + "\n"
+                               : hv::replay::CheckReport(check, hv::replay::ColourOutput());
   std::fputs(text.c_str(), stdout);
   return check.HasErrors() ? 1 : 0;
 }

@@ -14,7 +14,14 @@ namespace hv {
 
 /// Datatype codes of sensor_msgs/PointField.
 enum class FieldType : std::uint8_t {
-  kInt8 = 1, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64
+  kInt8 = 1,
+  kUint8,
+  kInt16,
+  kUint16,
+  kInt32,
+  kUint32,
+  kFloat32,
+  kFloat64
 };
 
 struct PointFieldView {
@@ -73,7 +80,7 @@ struct DecodedScan {
   std::size_t points_in = 0;
   std::size_t not_finite = 0;
   std::size_t out_of_range = 0;
-  std::size_t bad_time = 0;   ///< time not finite or outside two scan periods
+  std::size_t bad_time = 0;  ///< time not finite or outside two scan periods
   std::string error;
 };
 

@@ -22,20 +22,20 @@ struct CheckItem {
 };
 
 struct BagCheckOptions {
-  double odometry_s = 30.0;         ///< data from which rotations are compared; 0: none
-  double start_s = 0.0;             ///< where in the bag the comparison starts
-  bool compare_extrinsic = false;   ///< judge the configured T_imu_lidar
+  double odometry_s = 30.0;        ///< data from which rotations are compared; 0: none
+  double start_s = 0.0;            ///< where in the bag the comparison starts
+  bool compare_extrinsic = false;  ///< judge the configured T_imu_lidar
 };
 
 /// What point clouds look like.
 struct CloudFigures {
   std::string frame_id;
-  std::string fields;               ///< "x:float32 ..."
-  double points_per_scan = 0.0;     ///< mean, as sent
-  double kept_share = 0.0;          ///< finite and within range
-  double sweep_s = 0.0;             ///< median duration of a scan
+  std::string fields;            ///< "x:float32 ..."
+  double points_per_scan = 0.0;  ///< mean, as sent
+  double kept_share = 0.0;       ///< finite and within range
+  double sweep_s = 0.0;          ///< median duration of a scan
   std::size_t rings = 0;
-  std::size_t unusable = 0;         ///< clouds that could not be decoded
+  std::size_t unusable = 0;  ///< clouds that could not be decoded
   std::string first_error;
   std::optional<PointTimeLayout> time;
 };
@@ -45,7 +45,7 @@ struct BagCheck {
   StreamFigures imu;
   CloudFigures cloud;
   ImuFigures readings;
-  double covered_share = 0.0;       ///< of scans within the IMU's stamps
+  double covered_share = 0.0;  ///< of scans within the IMU's stamps
   std::optional<RotationMatch> rotation;
   std::vector<CheckItem> items;
 

@@ -12,10 +12,10 @@
 #include "hv_core/trajectory.h"
 
 /// Readers of the NCLT data set (Carlevaris-Bianco, Ushani, Eustice: University of Michigan North
-/// Campus long-term vision and lidar dataset, 2016). Files use a body frame with x forward, y right,
-/// z down. Everything returned here is turned to x forward, y left, z up: IMU samples in the frame
-/// `imu_link` at the MS25, points in the frame `velodyne` at the LiDAR with axes parallel to those
-/// of `imu_link`.
+/// Campus long-term vision and lidar dataset, 2016). Files use a body frame with x forward, y
+/// right, z down. Everything returned here is turned to x forward, y left, z up: IMU samples in the
+/// frame `imu_link` at the MS25, points in the frame `velodyne` at the LiDAR with axes parallel to
+/// those of `imu_link`.
 namespace hv::replay::nclt {
 
 /// Pose of `velodyne` in `imu_link`: body_T_ms25^-1 body_T_velodyne in z-up axes; its rotation is
@@ -54,17 +54,17 @@ class HitsReader {
   bool truncated_ = false;
 };
 
-/// Vertical position of the frame that hits are stored in, below the LiDAR along its axis [m]: 0 for
-/// hits in sensor coordinates; velodyne_sync files may hold them moved to the body frame. Found from
-/// the fixed elevation of each laser of the HDL-32E; nullopt when there are too few hits.
+/// Vertical position of the frame that hits are stored in, below the LiDAR along its axis [m]: 0
+/// for hits in sensor coordinates; velodyne_sync files may hold them moved to the body frame. Found
+/// from the fixed elevation of each laser of the HDL-32E; nullopt when there are too few hits.
 std::optional<double> VerticalShift(const std::vector<Point>& hits);
 
 /// Turns hits of one packet or file into frame `velodyne`. `vertical_shift` as from VerticalShift;
 /// shifted hits are taken as parallel to the body axes, others as in the sensor's own.
 void ToVelodyneFrame(double vertical_shift, std::vector<Point>& hits);
 
-/// Cuts the stream of packets into sweeps of one revolution, with the firing time of each point from
-/// the packet's stamp and the firing order of the HDL-32E.
+/// Cuts the stream of packets into sweeps of one revolution, with the firing time of each point
+/// from the packet's stamp and the firing order of the HDL-32E.
 class SweepBuilder {
  public:
   /// Returns the finished sweep when `packet` starts a new one.

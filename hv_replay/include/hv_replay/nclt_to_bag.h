@@ -17,10 +17,12 @@ struct NcltConversion {
 };
 
 /// Converts one session of the NCLT data set: `velodyne_hits.bin`, or else `velodyne_sync/`, and
-/// `ms25.csv` of `input` to a lz4 bag with `/points` (frame `velodyne`, relative time per point) and
+/// `ms25.csv` of `input` to a lz4 bag with `/points` (frame `velodyne`, relative time per point)
+/// and
 /// `/imu_raw` (frame `imu_link`); see nclt.h for the frames. With a `groundtruth_*.csv`, poses of
 /// `imu_link` are written beside the bag as a TUM file of the same name. The bag appears under its
-/// name only when complete. Throws InputError when an input is missing or the bag cannot be written.
+/// name only when complete. Throws InputError when an input is missing or the bag cannot be
+/// written.
 NcltConversion ConvertNclt(const std::string& input, const std::string& bag_path);
 
 }  // namespace hv::replay

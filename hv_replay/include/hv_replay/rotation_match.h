@@ -19,15 +19,15 @@ struct RotationStep {
 
 /// How the rotation seen by the LiDAR and that measured by the gyroscope fit each other.
 struct RotationMatch {
-  double offset_s = 0.0;         ///< to add to LiDAR stamps to get IMU time
-  double correlation = 0.0;      ///< at that offset with the best rotation, 1 = perfect
-  double gyro_scale = 1.0;       ///< gyroscope over LiDAR rotation: 1 for rad/s, 57.3 for deg/s
+  double offset_s = 0.0;     ///< to add to LiDAR stamps to get IMU time
+  double correlation = 0.0;  ///< at that offset with the best rotation, 1 = perfect
+  double gyro_scale = 1.0;   ///< gyroscope over LiDAR rotation: 1 for rad/s, 57.3 for deg/s
   Eigen::Matrix3d R_imu_lidar = Eigen::Matrix3d::Identity();  ///< best rotation
-  bool all_axes = false;         ///< the motion turned about more than one axis: R is unique
-  double rms_rate = 0.0;         ///< of the LiDAR [rad/s]
+  bool all_axes = false;  ///< the motion turned about more than one axis: R is unique
+  double rms_rate = 0.0;  ///< of the LiDAR [rad/s]
   std::size_t steps = 0;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< sum of gyro * lidar^T at the offset
-  double norms = 0.0;            ///< sqrt(sum |gyro|^2 * sum |lidar|^2)
+  double norms = 0.0;                                    ///< sqrt(sum |gyro|^2 * sum |lidar|^2)
 
   /// Correlation when a given rotation is used instead of the best one, in [-1, 1].
   double CorrelationWith(const Eigen::Matrix3d& R_imu_lidar) const;

@@ -11,15 +11,15 @@ namespace hv::replay {
 /// Timing of one stream of messages.
 struct StreamFigures {
   std::size_t count = 0;
-  double rate_hz = 0.0;            ///< from the median interval
+  double rate_hz = 0.0;  ///< from the median interval
   double median_interval_s = 0.0;
-  std::size_t gaps = 0;            ///< intervals above 1.5 times the median
+  std::size_t gaps = 0;  ///< intervals above 1.5 times the median
   double longest_gap_s = 0.0;
-  double longest_gap_at_s = 0.0;   ///< after the first stamp
-  std::size_t unsorted = 0;        ///< stamps earlier than the one before
-  std::size_t duplicates = 0;      ///< stamps equal to the one before
+  double longest_gap_at_s = 0.0;  ///< after the first stamp
+  std::size_t unsorted = 0;       ///< stamps earlier than the one before
+  std::size_t duplicates = 0;     ///< stamps equal to the one before
   double longest_step_back_s = 0.0;
-  double latency_s = 0.0;          ///< median of arrival minus stamp
+  double latency_s = 0.0;  ///< median of arrival minus stamp
 };
 
 /// `stamps` in order of arrival; `arrivals` of the same length.
@@ -33,7 +33,7 @@ struct ImuFigures {
   double gyro_peak = 0.0;          ///< 99.9th percentile of the norm, in the unit of the message
   std::size_t not_finite = 0;
   std::size_t all_zero = 0;
-  bool starts_at_rest = false;     ///< gyroscope and accelerometer hardly vary in the first second
+  bool starts_at_rest = false;  ///< gyroscope and accelerometer hardly vary in the first second
 };
 
 ImuFigures SummarizeImu(const std::vector<ImuSample>& samples);

@@ -43,7 +43,7 @@ Statistics Summarize(std::vector<double> values);
 struct MatchedPose {
   Time stamp;
   Pose reference;
-  Pose estimate;  ///< after alignment
+  Pose estimate;                   ///< after alignment
   double translation_error = 0.0;  ///< [m]
   double rotation_error = 0.0;     ///< [deg]
 };
@@ -58,13 +58,13 @@ struct RelativeError {
 struct TrajectoryError {
   std::size_t reference_poses = 0;
   std::size_t estimate_poses = 0;
-  double duration_s = 0.0;    ///< from the first to the last matched pose
-  double path_length_m = 0.0; ///< of the reference over the matched poses
+  double duration_s = 0.0;                       ///< from the first to the last matched pose
+  double path_length_m = 0.0;                    ///< of the reference over the matched poses
   Pose T_reference_estimate = Pose::Identity();  ///< the alignment
-  Statistics translation;     ///< absolute pose error [m]
-  Statistics horizontal;      ///< its part in the x-y plane of the reference [m]
-  Statistics vertical;        ///< its part along z of the reference [m]
-  Statistics rotation;        ///< [deg]
+  Statistics translation;                        ///< absolute pose error [m]
+  Statistics horizontal;                         ///< its part in the x-y plane of the reference [m]
+  Statistics vertical;                           ///< its part along z of the reference [m]
+  Statistics rotation;                           ///< [deg]
   Eigen::Vector3d axis_rmse = Eigen::Vector3d::Zero();  ///< along x, y, z of the reference [m]
   std::vector<RelativeError> relative;
   std::vector<MatchedPose> matched;

@@ -52,8 +52,7 @@ std::vector<double> NiceTicks(const Range& range, int count) {
 }
 
 std::string TickText(double value, double step) {
-  const int decimals =
-      std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);
+  const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9);
   char text[64];
   const double clean = std::abs(value) < 1e-9 * step ? 0.0 : value;
   std::snprintf(text, sizeof(text), "%.*f", decimals, clean);
@@ -91,7 +90,8 @@ void Axes::DrawTicks() {
     canvas_.Line({x, area_.top}, {x, area_.bottom}, kGridColour, 1.0);
     canvas_.Text({x, area_.bottom + 18.0}, TickText(tick, StepOf(x_ticks)), below);
   }
-  const std::vector<double> y_ticks = NiceTicks(y_, std::max(4, static_cast<int>(area_.height() / 45.0)));
+  const std::vector<double> y_ticks =
+      NiceTicks(y_, std::max(4, static_cast<int>(area_.height() / 45.0)));
   for (const double tick : y_ticks) {
     const double y = ToPixel(x_.low, tick).y;
     canvas_.Line({area_.left, y}, {area_.right, y}, kGridColour, 1.0);

@@ -65,8 +65,8 @@ Rgb ScaleColour(double value) {
 class Canvas::Font {
  public:
   explicit Font(bool bold) : bold_(bold) {
-    const std::string path = std::string("/usr/share/fonts/truetype/dejavu/DejaVuSans") +
-                             (bold ? "-Bold" : "") + ".ttf";
+    const std::string path =
+        std::string("/usr/share/fonts/truetype/dejavu/DejaVuSans") + (bold ? "-Bold" : "") + ".ttf";
     if (!std::filesystem::exists(path)) return;
     free_type_ = cv::freetype::createFreeType2();
     free_type_->loadFontData(path, 0);
@@ -144,7 +144,8 @@ void Canvas::Polyline(const std::vector<PixelPoint>& points, Rgb colour, double 
   shifted.reserve(points.size());
   for (const PixelPoint& point : points) shifted.push_back(Shifted(point));
   cv::Mat target = Target();
-  cv::polylines(target, shifted, false, ToScalar(colour), Thickness(thickness), cv::LINE_AA, kShift);
+  cv::polylines(target, shifted, false, ToScalar(colour), Thickness(thickness), cv::LINE_AA,
+                kShift);
 }
 
 void Canvas::Line(PixelPoint from, PixelPoint to, Rgb colour, double thickness) {
@@ -162,8 +163,11 @@ void Canvas::Rectangle(const PixelRect& rect, Rgb colour) {
 }
 
 void Canvas::Outline(const PixelRect& rect, Rgb colour, double thickness) {
-  Polyline({{rect.left, rect.top}, {rect.right, rect.top}, {rect.right, rect.bottom},
-            {rect.left, rect.bottom}, {rect.left, rect.top}},
+  Polyline({{rect.left, rect.top},
+            {rect.right, rect.top},
+            {rect.right, rect.bottom},
+            {rect.left, rect.bottom},
+            {rect.left, rect.top}},
            colour, thickness);
 }
 

@@ -42,8 +42,11 @@ float Quantile(std::vector<float> values, double share) {
 
 /// Light of a column of hue `height` in [0, 1] and brightness in [0, 1], BGR.
 cv::Vec3f Shade(float height, float brightness) {
-  const cv::Vec3f stops[] = {{0.98F, 0.56F, 0.24F}, {0.86F, 0.86F, 0.20F}, {0.47F, 0.90F, 0.44F},
-                             {0.30F, 0.84F, 0.98F}, {0.36F, 0.45F, 1.00F}};
+  const cv::Vec3f stops[] = {{0.98F, 0.56F, 0.24F},
+                             {0.86F, 0.86F, 0.20F},
+                             {0.47F, 0.90F, 0.44F},
+                             {0.30F, 0.84F, 0.98F},
+                             {0.36F, 0.45F, 1.00F}};
   const float position = std::clamp(height, 0.0F, 1.0F) * 3.999F;
   const std::size_t index = static_cast<std::size_t>(position);
   const float share = position - static_cast<float>(index);

@@ -119,8 +119,8 @@ std::string LengthText(double metres) {
 
 std::string Summary(const TrajectoryError& error) {
   char text[120];
-  std::snprintf(text, sizeof(text), "%.0f m in %.0f s, %zu poses   APE RMSE ",
-                error.path_length_m, error.duration_s, error.matched.size());
+  std::snprintf(text, sizeof(text), "%.0f m in %.0f s, %zu poses   APE RMSE ", error.path_length_m,
+                error.duration_s, error.matched.size());
   return text + LengthText(error.translation.rmse) + ", max " + LengthText(error.translation.max);
 }
 
