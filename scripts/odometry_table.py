@@ -7,6 +7,7 @@ import argparse
 import os
 import platform
 import re
+import subprocess
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -288,7 +289,11 @@ def parse_arguments() -> argparse.Namespace:
 
 def main() -> int:
     arguments = parse_arguments()
-    text = "\n".join(make_report(arguments).lines).rstrip() + "\n"
+    try:
+        text = "\n".join(make_report(arguments).lines).rstrip() + "\n"
+    except (OSError, ValueError, KeyError, subprocess.CalledProcessError) as error:
+        print(f"odometry_table: {error}", file=sys.stderr)
+        return 1
     if arguments.markdown is not None:
         arguments.markdown.write_text(text)
     on_terminal = sys.stdout.isatty() and "NO_COLOR" not in os.environ

@@ -35,8 +35,8 @@ std::vector<std::uint8_t> HesaiBytes(const Scan& scan) {
 PointCloudView HesaiView(const Scan& scan, const std::vector<std::uint8_t>& bytes) {
   PointCloudView view;
   view.stamp = scan.stamp;
-  view.fields = {{"x", 0, FieldType::kFloat32},         {"y", 4, FieldType::kFloat32},
-                 {"z", 8, FieldType::kFloat32},         {"intensity", 12, FieldType::kFloat32},
+  view.fields = {{"x", 0, FieldType::kFloat32},          {"y", 4, FieldType::kFloat32},
+                 {"z", 8, FieldType::kFloat32},          {"intensity", 12, FieldType::kFloat32},
                  {"timestamp", 16, FieldType::kFloat64}, {"ring", 24, FieldType::kUint16}};
   view.width = static_cast<std::uint32_t>(scan.points.size());
   view.height = 1;
@@ -72,8 +72,7 @@ PreprocessConfig CellsOf(double size_m) {
 
 /// Cells of one sweep at its end.
 std::vector<SurfaceCell> CellsAt(double start, double size_m, Hall& hall) {
-  const std::vector<Point> points =
-      Deskew(hall.Sweep(start), MotionOf(start), Pose::Identity());
+  const std::vector<Point> points = Deskew(hall.Sweep(start), MotionOf(start), Pose::Identity());
   return CellGrid(CellsOf(size_m)).Group(points, Eigen::Vector3d::Zero());
 }
 
@@ -86,7 +85,9 @@ VoxelMap FilledMap(double size_m, Hall& hall) {
   return map;
 }
 
-double CellSize(const benchmark::State& state) { return 0.01 * static_cast<double>(state.range(0)); }
+double CellSize(const benchmark::State& state) {
+  return 0.01 * static_cast<double>(state.range(0));
+}
 
 void Decode(benchmark::State& state) {
   Hall hall;

@@ -110,8 +110,8 @@ void WriteScans(const Sequence& sequence, rosbag::Bag& bag, KittiConversion& con
     const std::string path = sequence.scans[i].string();
     const std::vector<Point> points = kitti::ReadScan(path, truncated);
     if (truncated) conversion.problems.push_back(path + ": ends inside a point");
-    const ros::Time stamp = ros::Time().fromNSec(
-        static_cast<std::uint64_t>(sequence.stamps[i].nanoseconds()));
+    const ros::Time stamp =
+        ros::Time().fromNSec(static_cast<std::uint64_t>(sequence.stamps[i].nanoseconds()));
     bag.write("/points", stamp, ToMessage(points, stamp));
     ++conversion.scans;
     progress.Update(double(i + 1) / double(sequence.scans.size()),
