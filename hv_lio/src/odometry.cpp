@@ -106,12 +106,22 @@ void Odometry::Propagate(const std::vector<ImuStep>& steps) {
   stamp_ = stamp_ + elapsed;
 }
 
+void Odometry::WidenDegenerate(const UpdateSummary& update, double duration) {
+  constexpr int kVelocity = ErrorIndex::kVelocity;
+  const double density = config_.update.degenerate_accel_noise;
+  for (const Eigen::Vector3d& direction : update.degenerate_translation) {
+    covariance_.block<3, 3>(kVelocity, kVelocity) +=
+        density * density * duration * direction * direction.transpose();
+  }
+}
+
 ScanResult Odometry::Process(const Scan& scan, const std::vector<ImuStep>& steps) {
   ScanResult result;
   StageTimer timer;
   ScanMotion motion;
   motion.knots = PropagateKnots(steps, stamp_ - scan.stamp);
   motion.end_time = scan.end() - scan.stamp;
+  const double elapsed = scan.end() - stamp_;
   stamp_ = scan.end();
   arena_.Execute([&] {
     auto deskewed = std::make_shared<std::vector<Point>>(Deskew(scan, motion, T_imu_lidar_));
@@ -120,6 +130,7 @@ ScanResult Odometry::Process(const Scan& scan, const std::vector<ImuStep>& steps
     result.timing.preprocess_ms = timer.Lap();
     const bool first = map_.size() == 0;
     if (!first) result.update = update_.Apply(cells, map_, state_, covariance_);
+    WidenDegenerate(result.update, elapsed);
     result.timing.update_ms = timer.Lap();
     const bool corrected = result.update.residuals > 0;
     if (first || corrected) map_.Insert(cells, state_.T_odom_imu());

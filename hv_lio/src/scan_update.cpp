@@ -44,6 +44,12 @@ void UpdateConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("degenerate_noise_ratio", degenerate_noise_ratio,
                 "a direction is degenerate when its constraint is less than this many times what "
                 "uncertain normals alone would feign");
+  visitor.Field("degenerate_map_sigma_m", degenerate_map_sigma_m,
+                "map_sigma_m while a direction is degenerate: keeps the well-known directions from "
+                "leaking into it through the error of its axis [m]");
+  visitor.Field("degenerate_accel_noise", degenerate_accel_noise,
+                "velocity random walk along directions that the IMU alone observes, for the error "
+                "of its bias that the filter cannot know [m/s^2/sqrt(Hz)]");
 }
 
 void UpdateConfig::Validate(ConfigProblems& problems) const {
@@ -64,6 +70,10 @@ void UpdateConfig::Validate(ConfigProblems& problems) const {
   problems.Require(degenerate_sigma_rad > 0.0, "update.degenerate_sigma_rad",
                    "must be positive");
   problems.Require(degenerate_noise_ratio >= 0.0, "update.degenerate_noise_ratio",
+                   "must not be negative");
+  problems.Require(degenerate_map_sigma_m >= 0.0, "update.degenerate_map_sigma_m",
+                   "must not be negative");
+  problems.Require(degenerate_accel_noise >= 0.0, "update.degenerate_accel_noise",
                    "must not be negative");
 }
 
@@ -179,9 +189,12 @@ void ScanUpdate::RemoveDegenerate(const UpdateSummary& summary, Normal& normal) 
   normal.gradient = keep * normal.gradient;
 }
 
-void ScanUpdate::AddMapNoise(Normal& normal) const {
+void ScanUpdate::AddMapNoise(bool degenerate, Normal& normal) const {
+  const double translation_sigma =
+      degenerate ? std::max(config_.map_sigma_m, config_.degenerate_map_sigma_m)
+                 : config_.map_sigma_m;
   Vector6d variance;
-  variance.head<3>().setConstant(config_.map_sigma_m * config_.map_sigma_m);
+  variance.head<3>().setConstant(translation_sigma * translation_sigma);
   variance.tail<3>().setConstant(config_.map_sigma_rad * config_.map_sigma_rad);
   const Matrix6d widened = Matrix6d::Identity() + normal.information * variance.asDiagonal();
   const Eigen::PartialPivLU<Matrix6d> solver(widened);
@@ -203,7 +216,7 @@ UpdateSummary ScanUpdate::Apply(const std::vector<SurfaceCell>& cells, const Vox
     if (normal.count < static_cast<std::size_t>(config_.min_residuals)) return UpdateSummary();
     FindDegenerate(normal, summary);
     RemoveDegenerate(summary, normal);
-    AddMapNoise(normal);
+    AddMapNoise(!summary.degenerate_translation.empty(), normal);
     const ErrorVector deviation = current.Minus(prior);
     const ErrorMatrix to_prior = current.MinusJacobian(prior);
     information = to_prior.transpose() * prior_information * to_prior;

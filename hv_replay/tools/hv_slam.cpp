@@ -39,7 +39,7 @@ void Declare(CLI::App& app, Arguments& arguments) {
 }
 
 void PrintSummary(const hv::replay::SlamRunSummary& summary, const std::string& out) {
-  std::printf("point time: %s\n", summary.time_layout.c_str());
+  std::printf("%s\n", summary.time_layout.c_str());
   for (const auto& [status, count] : summary.scans_by_status) {
     std::printf("scans %-14s %zu\n", status.c_str(), count);
   }

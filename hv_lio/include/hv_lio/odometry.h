@@ -50,7 +50,7 @@ class Odometry {
 
  private:
   std::vector<MotionKnot> PropagateKnots(const std::vector<ImuStep>& steps, double start_time);
-  void UpdateAndInsert(const std::vector<SurfaceCell>& cells, ScanResult& result);
+  void WidenDegenerate(const UpdateSummary& update, double duration);
 
   LioConfig config_;
   Pose T_imu_lidar_;

@@ -25,6 +25,8 @@ struct UpdateConfig {
   double degenerate_sigma_m = 0.1;
   double degenerate_sigma_rad = 0.02;
   double degenerate_noise_ratio = 2.0;
+  double degenerate_map_sigma_m = 0.01;
+  double degenerate_accel_noise = 0.02;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
@@ -51,7 +53,7 @@ class ScanUpdate {
   void AddCell(const SurfaceCell& cell, const SurfaceFeature& feature, const Pose& T_odom_imu,
                const Matrix6d& pose_covariance, Normal& normal) const;
   void FindDegenerate(const Normal& normal, UpdateSummary& summary) const;
-  void AddMapNoise(Normal& normal) const;
+  void AddMapNoise(bool degenerate, Normal& normal) const;
   static void RemoveDegenerate(const UpdateSummary& summary, Normal& normal);
 
   UpdateConfig config_;
