@@ -173,7 +173,7 @@ void Update(benchmark::State& state) {
       prior.position = truth.translation() + Eigen::Vector3d(0.02, -0.01, 0.005);
       prior.rotation = truth.linear() * RotationFromRpy(0.002, -0.001, 0.003);
       ErrorMatrix covariance = 1e-3 * ErrorMatrix::Identity();
-      summary = update.Apply(cells, map, prior, covariance);
+      summary = update.Apply(cells, map, false, prior, covariance);
     }
   });
   state.counters["residuals"] = static_cast<double>(summary.residuals);

@@ -35,7 +35,6 @@ InitialState ConstantVelocityModel::Start() const {
   sigma.segment<3>(ErrorIndex::kRotation).setConstant(1e-3);
   sigma.segment<3>(ErrorIndex::kVelocity).setConstant(config_.initial_speed_mps);
   initial.covariance = sigma.cwiseAbs2().asDiagonal();
-  initial.moving = true;
   return initial;
 }
 

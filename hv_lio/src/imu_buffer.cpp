@@ -58,7 +58,8 @@ std::vector<ImuStep> ImuBuffer::Steps(Time from, Time to, double accel_scale) co
   AppendSteps(begin, At(to), after - before > gap_s_, steps);
   for (ImuStep& step : steps) {
     step.acceleration *= accel_scale;
-    step.degraded = step.degraded || Saturated(step);
+    const bool saturated = step.quality == ImuQuality::kMeasured && Saturated(step);
+    if (saturated) step.quality = ImuQuality::kSaturated;
   }
   return steps;
 }
@@ -75,7 +76,7 @@ void ImuBuffer::AppendSteps(const ImuSample& begin, const ImuSample& end, bool g
         (1.0 - ratio) * begin.angular_velocity + ratio * end.angular_velocity;
     step.acceleration = (1.0 - ratio) * begin.acceleration + ratio * end.acceleration;
     step.dt = duration / pieces;
-    step.degraded = gap;
+    step.quality = gap ? ImuQuality::kMissing : ImuQuality::kMeasured;
     steps.push_back(step);
   }
 }

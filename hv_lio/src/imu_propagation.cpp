@@ -12,8 +12,12 @@ void ImuNoiseConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("gyro_limit", gyro_limit, "reading from which the gyroscope saturates [rad/s]");
   visitor.Field("accel_limit", accel_limit,
                 "reading from which the accelerometer saturates [m/s^2]");
-  visitor.Field("degraded_factor", degraded_factor,
-                "factor on the noise densities while saturated or across a gap");
+  visitor.Field("saturated_factor", saturated_factor,
+                "factor on the noise densities while the sensor saturates");
+  visitor.Field("gap_gyro_noise", gap_gyro_noise,
+                "how fast the attitude may change while the IMU is silent [rad/s/sqrt(Hz)]");
+  visitor.Field("gap_accel_noise", gap_accel_noise,
+                "how fast the velocity may change while the IMU is silent [m/s^2/sqrt(Hz)]");
 }
 
 void ImuNoiseConfig::Validate(ConfigProblems& problems) const {
@@ -23,7 +27,9 @@ void ImuNoiseConfig::Validate(ConfigProblems& problems) const {
   problems.Require(accel_walk >= 0.0, "imu.accel_walk", "must not be negative");
   problems.Require(gyro_limit > 0.0, "imu.gyro_limit", "must be positive");
   problems.Require(accel_limit > 0.0, "imu.accel_limit", "must be positive");
-  problems.Require(degraded_factor >= 1.0, "imu.degraded_factor", "must be at least 1");
+  problems.Require(saturated_factor >= 1.0, "imu.saturated_factor", "must be at least 1");
+  problems.Require(gap_gyro_noise > 0.0, "imu.gap_gyro_noise", "must be positive");
+  problems.Require(gap_accel_noise > 0.0, "imu.gap_accel_noise", "must be positive");
 }
 
 Pose MotionKnot::PoseAfter(double dt) const {
@@ -38,9 +44,11 @@ MotionKnot PropagateState(const ImuStep& step, NavState& state) {
   knot.velocity = state.velocity;
   knot.angular_velocity = step.angular_velocity - state.gyro_bias;
   const Eigen::Vector3d turn = knot.angular_velocity * step.dt;
-  knot.acceleration =
-      state.rotation * so3::Exp(0.5 * turn) * (step.acceleration - state.accel_bias) +
-      state.gravity;
+  if (step.quality != ImuQuality::kMissing) {
+    knot.acceleration =
+        state.rotation * so3::Exp(0.5 * turn) * (step.acceleration - state.accel_bias) +
+        state.gravity;
+  }
   state.position += state.velocity * step.dt + 0.5 * step.dt * step.dt * knot.acceleration;
   state.velocity += knot.acceleration * step.dt;
   state.rotation = so3::Normalize(state.rotation * so3::Exp(turn));
@@ -62,6 +70,10 @@ ErrorMatrix PropagationJacobian(const ImuStep& step, const NavState& state) {
       -so3::Hat(state.gravity) * TangentBasis(state.gravity);
 
   ErrorMatrix f = ErrorMatrix::Identity();
+  f.block<3, 3>(Index::kPosition, Index::kVelocity) = dt * Eigen::Matrix3d::Identity();
+  f.block<3, 3>(Index::kRotation, Index::kRotation) = so3::Exp(-turn);
+  f.block<3, 3>(Index::kRotation, Index::kGyroBias) = -dt * so3::RightJacobian(turn);
+  if (step.quality == ImuQuality::kMissing) return f;
   for (const auto& [row, factor] : {std::pair<int, double>{Index::kPosition, 0.5 * dt * dt},
                                     std::pair<int, double>{Index::kVelocity, dt}}) {
     f.block<3, 3>(row, Index::kRotation) = factor * accel_by_rotation;
@@ -69,9 +81,6 @@ ErrorMatrix PropagationJacobian(const ImuStep& step, const NavState& state) {
     f.block<3, 3>(row, Index::kAccelBias) = -factor * middle;
     f.block<3, 2>(row, Index::kGravity) = factor * accel_by_gravity;
   }
-  f.block<3, 3>(Index::kPosition, Index::kVelocity) = dt * Eigen::Matrix3d::Identity();
-  f.block<3, 3>(Index::kRotation, Index::kRotation) = so3::Exp(-turn);
-  f.block<3, 3>(Index::kRotation, Index::kGyroBias) = -dt * so3::RightJacobian(turn);
   return f;
 }
 
@@ -80,12 +89,13 @@ void PropagateCovariance(const ImuStep& step, const NavState& state, const ImuNo
   const ErrorMatrix f = PropagationJacobian(step, state);
   const ErrorMatrix carried = f * covariance;
   covariance.noalias() = carried * f.transpose();
-  const double factor = step.degraded ? noise.degraded_factor * noise.degraded_factor : 1.0;
+  const bool missing = step.quality == ImuQuality::kMissing;
+  const double factor = step.quality == ImuQuality::kSaturated ? noise.saturated_factor : 1.0;
   const auto add = [&](int index, double density) {
-    covariance.diagonal().segment<3>(index).array() += factor * density * density * step.dt;
+    covariance.diagonal().segment<3>(index).array() += density * density * step.dt;
   };
-  add(ErrorIndex::kRotation, noise.gyro_noise);
-  add(ErrorIndex::kVelocity, noise.accel_noise);
+  add(ErrorIndex::kRotation, missing ? noise.gap_gyro_noise : factor * noise.gyro_noise);
+  add(ErrorIndex::kVelocity, missing ? noise.gap_accel_noise : factor * noise.accel_noise);
   add(ErrorIndex::kGyroBias, noise.gyro_walk);
   add(ErrorIndex::kAccelBias, noise.accel_walk);
   covariance = 0.5 * (covariance + covariance.transpose()).eval();

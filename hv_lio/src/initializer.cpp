@@ -30,6 +30,9 @@ void InitializerConfig::Describe(ConfigVisitor& visitor) {
                 "standard deviation of the accelerometer below which the sensor rests [m/s^2]");
   visitor.Field("moving_start_after_s", moving_start_after_s,
                 "start in motion when the sensor has not rested for this long; 0 = never [s]");
+  visitor.Field("moving_start_scans", moving_start_scans,
+                "scans that settle tilt and velocity after a start in motion; the map begins anew "
+                "behind them");
   visitor.Field("gravity_mps2", gravity_mps2, "norm of gravity at the place [m/s^2]");
 }
 
@@ -41,6 +44,8 @@ void InitializerConfig::Validate(ConfigProblems& problems) const {
   problems.Require(moving_start_after_s == 0.0 || moving_start_after_s >= static_duration_s,
                    "initialization.moving_start_after_s",
                    "must be 0 or at least static_duration_s");
+  problems.Require(moving_start_scans >= 0, "initialization.moving_start_scans",
+                   "must not be negative");
   problems.Require(gravity_mps2 > 9.7 && gravity_mps2 < 9.9, "initialization.gravity_mps2",
                    "must lie between 9.7 and 9.9");
 }
@@ -99,11 +104,26 @@ std::optional<InitialState> Initializer::TryInitialize() const {
   return waited ? std::optional<InitialState>(MakeState(recent, true)) : std::nullopt;
 }
 
+Eigen::Vector3d Initializer::MeanForceInLastFrame() const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d R_last_sample = Eigen::Matrix3d::Identity();
+  for (std::size_t i = samples_.size(); i-- > 0;) {
+    sum += R_last_sample * samples_[i].acceleration;
+    if (i == 0) break;
+    const double dt = samples_[i].stamp - samples_[i - 1].stamp;
+    const Eigen::Vector3d rate =
+        0.5 * (samples_[i].angular_velocity + samples_[i - 1].angular_velocity);
+    R_last_sample = R_last_sample * so3::Exp(-rate * dt);
+  }
+  return sum / static_cast<double>(samples_.size());
+}
+
 InitialState Initializer::MakeState(const Statistics& statistics, bool moving) const {
   InitialState initial;
   initial.moving = moving;
   initial.accel_scale = statistics.scale;
-  const Eigen::Vector3d up = statistics.accel_mean.normalized();
+  const Eigen::Vector3d force = moving ? MeanForceInLastFrame() : statistics.accel_mean;
+  const Eigen::Vector3d up = force.normalized();
   initial.state.rotation =
       Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   initial.state.gravity = Eigen::Vector3d(0.0, 0.0, -config_.gravity_mps2);

@@ -51,6 +51,7 @@ void Odometry::Start(Time stamp, const InitialState& initial) {
   }
   stamp_ = stamp;
   initialized_ = true;
+  settling_scans_ = initial.moving ? config_.initialization.moving_start_scans : 0;
 }
 
 void Odometry::MoveClock(Time stamp) {
@@ -106,6 +107,21 @@ void Odometry::Propagate(const std::vector<ImuStep>& steps) {
   stamp_ = stamp_ + elapsed;
 }
 
+void Odometry::Settle() {
+  map_.Clear();
+  if (--settling_scans_ > 0) return;
+  const Eigen::Matrix3d level =
+      Eigen::Quaterniond::FromTwoVectors(state_.gravity, -Eigen::Vector3d::UnitZ())
+          .toRotationMatrix();
+  state_.rotation = level * state_.rotation;
+  state_.velocity = level * state_.velocity;
+  state_.gravity = level * state_.gravity;
+  ErrorMatrix carry = ErrorMatrix::Identity();
+  carry.block<3, 3>(ErrorIndex::kPosition, ErrorIndex::kPosition) = level;
+  carry.block<3, 3>(ErrorIndex::kVelocity, ErrorIndex::kVelocity) = level;
+  covariance_ = (carry * covariance_ * carry.transpose()).eval();
+}
+
 void Odometry::WidenDegenerate(const UpdateSummary& update, double duration) {
   constexpr int kVelocity = ErrorIndex::kVelocity;
   const double density = config_.update.degenerate_accel_noise;
@@ -129,10 +145,12 @@ ScanResult Odometry::Process(const Scan& scan, const std::vector<ImuStep>& steps
     result.deskewed = std::move(deskewed);
     result.timing.preprocess_ms = timer.Lap();
     const bool first = map_.size() == 0;
-    if (!first) result.update = update_.Apply(cells, map_, state_, covariance_);
+    const bool settling = settling_scans_ > 0;
+    if (!first) result.update = update_.Apply(cells, map_, settling, state_, covariance_);
     WidenDegenerate(result.update, elapsed);
     result.timing.update_ms = timer.Lap();
     const bool corrected = result.update.residuals > 0;
+    if (settling) Settle();
     if (first || corrected) map_.Insert(cells, state_.T_odom_imu());
     result.timing.map_ms = timer.Lap();
     const bool tracking = corrected || (first && !cells.empty());

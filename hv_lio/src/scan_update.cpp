@@ -37,6 +37,9 @@ void UpdateConfig::Describe(ConfigVisitor& visitor) {
                 "error of the map that all residuals of a scan share, translation [m]");
   visitor.Field("map_sigma_rad", map_sigma_rad,
                 "the same for rotation; larger values let gravity level the map [rad]");
+  visitor.Field("settling_sigma_m", settling_sigma_m,
+                "map_sigma_m after a start in motion, while scans are skewed by unknown motion [m]");
+  visitor.Field("settling_sigma_rad", settling_sigma_rad, "the same for rotation [rad]");
   visitor.Field("min_residuals", min_residuals, "fewest residuals for an update");
   visitor.Field("degenerate_sigma_m", degenerate_sigma_m,
                 "a direction that the scan alone leaves less certain than this is degenerate [m]");
@@ -65,6 +68,9 @@ void UpdateConfig::Validate(ConfigProblems& problems) const {
                    "update.information_scale", "must be positive and at most 1");
   problems.Require(map_sigma_m >= 0.0, "update.map_sigma_m", "must not be negative");
   problems.Require(map_sigma_rad >= 0.0, "update.map_sigma_rad", "must not be negative");
+  problems.Require(settling_sigma_m >= 0.0, "update.settling_sigma_m", "must not be negative");
+  problems.Require(settling_sigma_rad >= 0.0, "update.settling_sigma_rad",
+                   "must not be negative");
   problems.Require(min_residuals >= 6, "update.min_residuals", "must be at least 6");
   problems.Require(degenerate_sigma_m > 0.0, "update.degenerate_sigma_m", "must be positive");
   problems.Require(degenerate_sigma_rad > 0.0, "update.degenerate_sigma_rad",
@@ -189,13 +195,10 @@ void ScanUpdate::RemoveDegenerate(const UpdateSummary& summary, Normal& normal) 
   normal.gradient = keep * normal.gradient;
 }
 
-void ScanUpdate::AddMapNoise(bool degenerate, Normal& normal) const {
-  const double translation_sigma =
-      degenerate ? std::max(config_.map_sigma_m, config_.degenerate_map_sigma_m)
-                 : config_.map_sigma_m;
+void ScanUpdate::AddMapNoise(double sigma_m, double sigma_rad, Normal& normal) {
   Vector6d variance;
-  variance.head<3>().setConstant(translation_sigma * translation_sigma);
-  variance.tail<3>().setConstant(config_.map_sigma_rad * config_.map_sigma_rad);
+  variance.head<3>().setConstant(sigma_m * sigma_m);
+  variance.tail<3>().setConstant(sigma_rad * sigma_rad);
   const Matrix6d widened = Matrix6d::Identity() + normal.information * variance.asDiagonal();
   const Eigen::PartialPivLU<Matrix6d> solver(widened);
   const Matrix6d information = solver.solve(normal.information);
@@ -204,19 +207,24 @@ void ScanUpdate::AddMapNoise(bool degenerate, Normal& normal) const {
 }
 
 UpdateSummary ScanUpdate::Apply(const std::vector<SurfaceCell>& cells, const VoxelMap& map,
-                                NavState& state, ErrorMatrix& covariance) const {
+                                bool settling, NavState& state, ErrorMatrix& covariance) const {
   UpdateSummary summary;
   const NavState prior = state;
   const ErrorMatrix prior_information = covariance.llt().solve(ErrorMatrix::Identity());
   const Matrix6d pose_covariance = covariance.topLeftCorner<6, 6>();
   NavState current = prior;
   ErrorMatrix information;
-  while (summary.iterations < config_.max_iterations && !summary.converged) {
+  const int max_iterations = settling ? 3 * config_.max_iterations : config_.max_iterations;
+  while (summary.iterations < max_iterations && !summary.converged) {
     Normal normal = Accumulate(cells, map, current.T_odom_imu(), pose_covariance);
     if (normal.count < static_cast<std::size_t>(config_.min_residuals)) return UpdateSummary();
-    FindDegenerate(normal, summary);
+    if (!settling) FindDegenerate(normal, summary);
     RemoveDegenerate(summary, normal);
-    AddMapNoise(!summary.degenerate_translation.empty(), normal);
+    const double degenerate_sigma =
+        summary.degenerate_translation.empty() ? 0.0 : config_.degenerate_map_sigma_m;
+    const double settling_sigma = settling ? config_.settling_sigma_m : 0.0;
+    AddMapNoise(std::max({config_.map_sigma_m, degenerate_sigma, settling_sigma}),
+                settling ? config_.settling_sigma_rad : config_.map_sigma_rad, normal);
     const ErrorVector deviation = current.Minus(prior);
     const ErrorMatrix to_prior = current.MinusJacobian(prior);
     information = to_prior.transpose() * prior_information * to_prior;

@@ -31,7 +31,7 @@ TEST(ImuBufferTest, StepsCoverTheIntervalAndIntegrateALinearSignalExactly) {
   for (const ImuStep& step : steps) {
     turned += step.dt * step.angular_velocity.z();
     EXPECT_EQ(step.acceleration.x(), 2.0);
-    EXPECT_FALSE(step.degraded);
+    EXPECT_EQ(step.quality, ImuQuality::kMeasured);
   }
   EXPECT_NEAR(turned, 0.5 * (0.8765 * 0.8765 - 0.1234 * 0.1234), 1e-9);
 }
@@ -43,8 +43,8 @@ TEST(ImuBufferTest, GapsAreDividedAndMarked) {
   buffer.Add(late);
   const auto steps = buffer.Steps(Time::FromSeconds(0.15), Time::FromSeconds(0.45), 1.0);
   EXPECT_NEAR(TotalDuration(steps), 0.3, 1e-9);
-  EXPECT_FALSE(steps.front().degraded);
-  EXPECT_TRUE(steps.back().degraded);
+  EXPECT_EQ(steps.front().quality, ImuQuality::kMeasured);
+  EXPECT_EQ(steps.back().quality, ImuQuality::kMissing);
   for (const ImuStep& step : steps) EXPECT_LE(step.dt, 0.0201);
   EXPECT_NEAR(buffer.LongestGap(Time::FromSeconds(0.15), Time::FromSeconds(0.45)), 0.25, 1e-9);
 }
@@ -54,7 +54,7 @@ TEST(ImuBufferTest, HoldsTheReadingBeyondTheSamples) {
   const auto steps = buffer.Steps(Time::FromSeconds(0.1), Time::FromSeconds(0.4), 1.0);
   EXPECT_NEAR(TotalDuration(steps), 0.3, 1e-9);
   EXPECT_NEAR(steps.back().angular_velocity.z(), 0.2, 1e-9);
-  EXPECT_TRUE(steps.back().degraded);
+  EXPECT_EQ(steps.back().quality, ImuQuality::kMissing);
   EXPECT_TRUE(buffer.Steps(Time::FromSeconds(0.2), Time::FromSeconds(0.1), 1.0).empty());
 }
 
@@ -80,8 +80,8 @@ TEST(ImuBufferTest, SaturatedReadingsAreMarked) {
     buffer.Add(sample);
   }
   const auto steps = buffer.Steps(Time::FromSeconds(0.0), Time::FromSeconds(0.09), 1.0);
-  EXPECT_FALSE(steps.front().degraded);
-  EXPECT_TRUE(steps.back().degraded);
+  EXPECT_EQ(steps.front().quality, ImuQuality::kMeasured);
+  EXPECT_EQ(steps.back().quality, ImuQuality::kSaturated);
 }
 
 TEST(ImuBufferTest, DropKeepsTheSampleThatBeginsTheInterval) {

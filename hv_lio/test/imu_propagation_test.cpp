@@ -90,17 +90,37 @@ TEST(PropagationTest, CovarianceStaysSymmetricPositiveAndGrows) {
   EXPECT_GT(covariance.trace(), before);
 }
 
-TEST(PropagationTest, DegradedReadingsAreTrustedLess) {
+TEST(PropagationTest, JacobianOfAMissingReadingMatchesDifferences) {
+  std::mt19937 random(6);
+  const NavState state = RandomState(random);
+  ImuStep step = RandomStep(random, 0.02);
+  step.quality = ImuQuality::kMissing;
+  const ErrorMatrix jacobian = PropagationJacobian(step, state);
+  const NavState nominal = Propagated(step, state);
+  for (int column = 0; column < kErrorDim; ++column) {
+    const ErrorVector delta = 1e-5 * ErrorVector::Unit(column);
+    const ErrorVector numeric = (Propagated(step, state.Plus(delta)).Minus(nominal) -
+                                 Propagated(step, state.Plus(-delta)).Minus(nominal)) /
+                                2e-5;
+    EXPECT_LT((jacobian.col(column) - numeric).norm(), 2e-6) << "column " << column;
+  }
+}
+
+TEST(PropagationTest, SaturatedReadingsAreTrustedLessAndMissingOnesLeast) {
   NavState state;
   ImuStep step;
   step.dt = 0.01;
   ErrorMatrix sure = 1e-6 * ErrorMatrix::Identity();
   ErrorMatrix unsure = sure;
+  ErrorMatrix blind = sure;
   PropagateCovariance(step, state, ImuNoiseConfig(), sure);
-  step.degraded = true;
+  step.quality = ImuQuality::kSaturated;
   PropagateCovariance(step, state, ImuNoiseConfig(), unsure);
+  step.quality = ImuQuality::kMissing;
+  PropagateCovariance(step, state, ImuNoiseConfig(), blind);
   const int v = ErrorIndex::kVelocity;
   EXPECT_GT(unsure(v, v), 10.0 * (sure(v, v) - 1e-6) + 1e-6);
+  EXPECT_GT(blind(v, v), 10.0 * unsure(v, v));
 }
 
 }  // namespace

@@ -53,6 +53,27 @@ TEST(InitializerTest, MotionIsWaitedOutThenAcceptedWithAWiderCovariance) {
   EXPECT_GT(initial->covariance(ErrorIndex::kVelocity, ErrorIndex::kVelocity), 1.0);
 }
 
+TEST(InitializerTest, TurningSensorStillFindsUp) {
+  Initializer initializer{InitializerConfig()};
+  Eigen::Matrix3d R_world_imu = Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d rate(1.0, -0.7, 0.5);
+  for (int i = 0; i < 700; ++i) {
+    ImuSample sample;
+    sample.stamp = Time::FromSeconds(50.0 + i / 200.0);
+    sample.angular_velocity = rate;
+    const Eigen::Vector3d shaking(3.0 * std::sin(0.2 * i), 2.0 * std::cos(0.15 * i), 0.0);
+    sample.acceleration =
+        R_world_imu.transpose() * (Eigen::Vector3d(0.0, 0.0, 9.80665) + shaking);
+    initializer.Add(sample);
+    if (i < 699) R_world_imu = R_world_imu * so3::Exp(rate / 200.0);
+  }
+  const auto initial = initializer.TryInitialize();
+  ASSERT_TRUE(initial.has_value());
+  EXPECT_TRUE(initial->moving);
+  const Eigen::Vector3d up = R_world_imu.transpose() * Eigen::Vector3d::UnitZ();
+  EXPECT_LT((initial->state.rotation * up - Eigen::Vector3d::UnitZ()).norm(), 0.03);
+}
+
 TEST(InitializerTest, ImpossibleGravityIsNamed) {
   Initializer initializer{InitializerConfig()};
   Feed(initializer, 5.0, Eigen::Vector3d(0.0, 0.0, 3.0), 0.003);

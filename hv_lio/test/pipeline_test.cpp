@@ -162,6 +162,23 @@ TEST(PipelineTest, RunsWithoutAnImuWhenToldTo) {
   EXPECT_LT(drive.WorstError(), 0.03);
 }
 
+/// The first data already move: velocity and tilt have to come out of the scans.
+TEST(PipelineTest, StartsInMotion) {
+  LioConfig config;
+  config.initialization.static_accel_std = 1e-4;
+  Drive drive(config);
+  drive.Run(3.0, 12.0);
+  const OdometryEstimate& last = drive.results.back().estimate;
+  const Pose truth = Swing::PoseAt(last.stamp.seconds());
+  const Pose before = Swing::PoseAt(last.stamp.seconds() - 0.001);
+  const Eigen::Vector3d velocity =
+      truth.linear().transpose() * (truth.translation() - before.translation()) / 0.001;
+  EXPECT_EQ(drive.results.back().status, ScanStatus::kTracking);
+  EXPECT_LT((last.T_odom_imu.linear().transpose() * last.velocity_odom - velocity).norm(), 0.05);
+  constexpr double kTwoDegrees = 0.035;
+  EXPECT_LT((last.gravity_odom.normalized() + Eigen::Vector3d::UnitZ()).norm(), kTwoDegrees);
+}
+
 TEST(PipelineTest, BridgesAnImuGap) {
   Drive drive;
   drive.imu_hook = [](ImuSample& sample) {

@@ -13,7 +13,7 @@ namespace hv::lio {
 /// IMU samples in time order, and the propagation steps between two instants cut from them.
 class ImuBuffer {
  public:
-  /// Longer silences than `gap_s` are bridged by steps marked degraded.
+  /// Longer silences than `gap_s` are bridged by steps marked missing.
   ImuBuffer(const ImuNoiseConfig& noise, double gap_s) : noise_(noise), gap_s_(gap_s) {}
 
   /// Inserts in time order; false for a duplicate stamp.

@@ -16,7 +16,9 @@ struct ImuNoiseConfig {
   double accel_walk = 1e-4;     // m/s^3/sqrt(Hz)
   double gyro_limit = 35.0;     // rad/s
   double accel_limit = 157.0;   // m/s^2
-  double degraded_factor = 30.0;
+  double saturated_factor = 30.0;
+  double gap_gyro_noise = 0.5;  // rad/s/sqrt(Hz)
+  double gap_accel_noise = 5.0;  // m/s^2/sqrt(Hz)
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
@@ -35,16 +37,20 @@ struct MotionKnot {
   Pose PoseAfter(double dt) const;
 };
 
+/// What a step rests on: a good reading, one at the sensor's limit, or none because the IMU was
+/// silent.
+enum class ImuQuality { kMeasured, kSaturated, kMissing };
+
 /// One step of the process model with a constant reading over `dt` seconds.
 struct ImuStep {
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< measured [rad/s]
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();      ///< measured [m/s^2]
   double dt = 0.0;                                             ///< [s]
-  bool degraded = false;  ///< saturated or bridging a gap: noise times degraded_factor
+  ImuQuality quality = ImuQuality::kMeasured;
 };
 
 /// Mean part of the step (methods section 1, propagation; midpoint attitude for the specific
-/// force). Returns the interval's motion, for deskewing.
+/// force). A missing reading keeps the velocity. Returns the interval's motion, for deskewing.
 MotionKnot PropagateState(const ImuStep& step, NavState& state);
 
 /// F = d x_{k+1} / d x_k of PropagateState at `state`, in error coordinates.

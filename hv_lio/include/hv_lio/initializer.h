@@ -15,6 +15,7 @@ struct InitializerConfig {
   double static_gyro_std = 0.05;
   double static_accel_std = 0.4;
   double moving_start_after_s = 3.0;
+  int moving_start_scans = 10;
   double gravity_mps2 = 9.80665;
 
   void Describe(ConfigVisitor& visitor);
@@ -31,8 +32,9 @@ struct InitialState {
 
 /// Finds gravity, gyroscope bias and the accelerometer's unit from the first IMU samples (methods
 /// section 1, initialisation). Standing still: the mean reading gives them. When the sensor does
-/// not come to rest within `moving_start_after_s`, starts from the mean direction of the
-/// acceleration with a covariance that says so, and the filter settles the rest.
+/// not come to rest within `moving_start_after_s`, starts from the mean acceleration of that time,
+/// each reading turned into the last frame by the gyroscope, with a covariance that says so, and
+/// the filter settles the rest.
 class Initializer {
  public:
   explicit Initializer(const InitializerConfig& config) : config_(config) {}
@@ -49,6 +51,7 @@ class Initializer {
  private:
   struct Statistics;
   Statistics Summarize(double duration) const;
+  Eigen::Vector3d MeanForceInLastFrame() const;
   InitialState MakeState(const Statistics& statistics, bool moving) const;
 
   InitializerConfig config_;

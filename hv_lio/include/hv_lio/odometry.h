@@ -50,6 +50,7 @@ class Odometry {
 
  private:
   std::vector<MotionKnot> PropagateKnots(const std::vector<ImuStep>& steps, double start_time);
+  void Settle();
   void WidenDegenerate(const UpdateSummary& update, double duration);
 
   LioConfig config_;
@@ -64,6 +65,7 @@ class Odometry {
   Time stamp_;
   double accel_scale_ = 1.0;
   bool initialized_ = false;
+  int settling_scans_ = 0;  ///< left of a start in motion
 };
 
 }  // namespace hv::lio

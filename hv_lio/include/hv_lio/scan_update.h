@@ -21,6 +21,8 @@ struct UpdateConfig {
   double information_scale = 1.0;
   double map_sigma_m = 0.0;
   double map_sigma_rad = 1e-3;
+  double settling_sigma_m = 0.03;
+  double settling_sigma_rad = 0.01;
   int min_residuals = 30;
   double degenerate_sigma_m = 0.1;
   double degenerate_sigma_rad = 0.02;
@@ -40,10 +42,11 @@ class ScanUpdate {
   explicit ScanUpdate(const UpdateConfig& config) : config_(config) {}
 
   /// Updates `state` and `covariance`. Leaves both alone, and says so in `residuals`, when fewer
-  /// than min_residuals cells match. Parallel with TBB; the result does not depend on the number of
+  /// than min_residuals cells match. `settling`: velocity and tilt are still unknown, so more
+  /// iterations are made and no direction is left to the IMU. Parallel with TBB; the result does not depend on the number of
   /// threads.
-  UpdateSummary Apply(const std::vector<SurfaceCell>& cells, const VoxelMap& map, NavState& state,
-                      ErrorMatrix& covariance) const;
+  UpdateSummary Apply(const std::vector<SurfaceCell>& cells, const VoxelMap& map, bool settling,
+                      NavState& state, ErrorMatrix& covariance) const;
 
  private:
   struct Normal;
@@ -53,7 +56,7 @@ class ScanUpdate {
   void AddCell(const SurfaceCell& cell, const SurfaceFeature& feature, const Pose& T_odom_imu,
                const Matrix6d& pose_covariance, Normal& normal) const;
   void FindDegenerate(const Normal& normal, UpdateSummary& summary) const;
-  void AddMapNoise(bool degenerate, Normal& normal) const;
+  static void AddMapNoise(double sigma_m, double sigma_rad, Normal& normal);
   static void RemoveDegenerate(const UpdateSummary& summary, Normal& normal);
 
   UpdateConfig config_;
