@@ -126,9 +126,10 @@ SlamRunSummary SlamRun::Run() {
   summary_.error = reader_.Read(handlers, "odometry").error;
   Drain(true);
   summary_.counters = pipeline_.counters();
-  summary_.path_length_m = odometry_.PathLength();
+  const Trajectory odometry(poses_);
+  summary_.path_length_m = odometry.PathLength();
   if (decoder_.time_layout()) summary_.time_layout = decoder_.time_layout()->ToString();
-  WriteResults();
+  WriteResults(odometry);
   return summary_;
 }
 
@@ -164,7 +165,7 @@ void SlamRun::Take(const lio::ScanResult& result) {
   if (!tracking && result.status != lio::ScanStatus::kImuOnly) return;
   timing_.Append(TimingRow(result));
   covariance_.Append(CovarianceRow(result));
-  odometry_.Append(result.estimate.stamp, result.estimate.T_odom_imu);
+  poses_.push_back({result.estimate.stamp, result.estimate.T_odom_imu});
   if (!tracking) return;
   summary_.total_ms.push_back(result.timing.total_ms());
   summary_.degenerate_scans += result.update.degenerate() ? 1U : 0U;
@@ -179,13 +180,13 @@ void SlamRun::AddToPicture(const lio::ScanResult& result) {
   }
 }
 
-void SlamRun::WriteResults() {
-  WriteTum(out_dir_ + "/odometry.tum", odometry_);
+void SlamRun::WriteResults(const Trajectory& odometry) {
+  WriteTum(out_dir_ + "/odometry.tum", odometry);
   WriteText(out_dir_ + "/summary.json", SummaryJson(summary_).ToString() + "\n");
-  if (!pictures_ || odometry_.size() < 2 || picture_.cells() == 0) return;
-  PlotTrajectories({{"odometry", odometry_, false}}, "HV-LIO odometry",
+  if (!pictures_ || odometry.size() < 2 || picture_.cells() == 0) return;
+  PlotTrajectories({{"odometry", odometry, false}}, "HV-LIO odometry",
                    out_dir_ + "/trajectory.png");
-  picture_.Save(odometry_, "HV-LIO map", out_dir_ + "/map.png");
+  picture_.Save(odometry, "HV-LIO map", out_dir_ + "/map.png");
 }
 
 JsonObject SummaryJson(const SlamRunSummary& summary) {

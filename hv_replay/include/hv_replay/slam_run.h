@@ -67,7 +67,7 @@ class SlamRun {
   void Drain(bool flush);
   void Take(const lio::ScanResult& result);
   void AddToPicture(const lio::ScanResult& result);
-  void WriteResults();
+  void WriteResults(const Trajectory& odometry);
 
   lio::SystemConfig config_;
   std::string out_dir_;
@@ -77,7 +77,7 @@ class SlamRun {
   lio::Pipeline pipeline_;
   CsvLog timing_;
   CsvLog covariance_;
-  Trajectory odometry_;
+  std::vector<StampedPose> poses_;  ///< in order of processing; a clock may have jumped back
   MapPicture picture_;
   SlamRunSummary summary_;
   std::string last_decode_error_;
