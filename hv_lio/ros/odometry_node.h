@@ -20,7 +20,7 @@
 #include "frame_lookup.h"
 #include "health.h"
 #include "hv_core/trajectory.h"
-#include "imu_predictor.h"
+#include "hv_lio/imu_predictor.h"
 #include "input_queue.h"
 #include "odometry_engine.h"
 #include "odometry_publisher.h"

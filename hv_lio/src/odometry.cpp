@@ -175,6 +175,7 @@ OdometryEstimate Odometry::Estimate(const Eigen::Vector3d& angular_velocity) con
   estimate.gyro_bias = state_.gyro_bias;
   estimate.accel_bias = state_.accel_bias;
   estimate.gravity_odom = state_.gravity;
+  estimate.accel_scale = accel_scale_;
 
   Matrix6d to_odom_axes = Matrix6d::Identity();
   to_odom_axes.bottomRightCorner<3, 3>() = state_.rotation;

@@ -4,8 +4,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "hv_core/so3.h"
-
 namespace hv::lio {
 namespace {
 
@@ -41,11 +39,11 @@ void Pipeline::Note(std::string event) { events_.push_back(std::move(event)); }
 
 std::vector<std::string> Pipeline::TakeEvents() { return std::exchange(events_, {}); }
 
-std::optional<OdometryEstimate> Pipeline::AddImu(const ImuSample& sample) {
+void Pipeline::AddImu(const ImuSample& sample) {
   ++counters_.imu_samples;
   if (!sample.acceleration.allFinite() || !sample.angular_velocity.allFinite()) {
     ++counters_.imu_invalid;
-    return std::nullopt;
+    return;
   }
   const std::optional<Time> newest = imu_.newest();
   if (newest && sample.stamp <= *newest) {
@@ -59,13 +57,12 @@ std::optional<OdometryEstimate> Pipeline::AddImu(const ImuSample& sample) {
     ++counters_.imu_gaps;
     Note(Line("IMU silent for %.3f s%s", sample.stamp - *newest, ""));
   }
-  if (!imu_.Add(sample)) return std::nullopt;
+  if (!imu_.Add(sample)) return;
   if (sample.angular_velocity.cwiseAbs().maxCoeff() >= config_.imu.gyro_limit ||
       sample.acceleration.cwiseAbs().maxCoeff() * odometry_.accel_scale() >=
           config_.imu.accel_limit) {
     ++counters_.imu_saturated;
   }
-  return Predict(sample);
 }
 
 void Pipeline::AddScan(Scan scan, double decode_ms) {
@@ -165,7 +162,6 @@ ScanResult Pipeline::Track(const Scan& scan) {
   imu_.DropBefore(scan.end());
   constant_velocity_.Observe(scan.end(), result.estimate.T_odom_imu.linear());
   Supervise(result);
-  RestartPrediction(result.estimate);
   return result;
 }
 
@@ -184,7 +180,6 @@ void Pipeline::FollowClock(Time stamp, const char* source) {
   if (imu_.newest() && *imu_.newest() > stamp + config_.robustness.clock_jump_s) imu_.Clear();
   initializer_.Clear();
   constant_velocity_.Clear();
-  predicted_to_.reset();
   if (config_.robustness.on_clock_jump == "reset") {
     Reset(true);
   } else {
@@ -213,44 +208,7 @@ void Pipeline::Reset(bool keep_pose) {
   odometry_.Reset(keep_pose);
   initializer_.Clear();
   constant_velocity_.Clear();
-  predicted_to_.reset();
   imu_only_streak_ = 0;
-}
-
-void Pipeline::RestartPrediction(const OdometryEstimate& estimate) {
-  if (!odometry_.initialized() || !config_.use_imu) return;
-  predicted_ = odometry_.state();
-  predicted_from_ = estimate;
-  predicted_to_.reset();
-  for (const ImuSample& sample : imu_.samples()) Predict(sample);
-}
-
-std::optional<OdometryEstimate> Pipeline::Predict(const ImuSample& sample) {
-  if (!odometry_.initialized() || !config_.use_imu) return std::nullopt;
-  const Time from = predicted_to_ ? predicted_to_->stamp : odometry_.stamp();
-  if (sample.stamp <= from) {
-    if (!predicted_to_) predicted_to_ = sample;
-    return std::nullopt;
-  }
-  ImuStep step;
-  const ImuSample& before = predicted_to_ ? *predicted_to_ : sample;
-  step.angular_velocity = 0.5 * (before.angular_velocity + sample.angular_velocity);
-  step.acceleration = 0.5 * odometry_.accel_scale() * (before.acceleration + sample.acceleration);
-  step.dt = sample.stamp - std::max(from, odometry_.stamp());
-  PropagateState(step, predicted_);
-  predicted_to_ = sample;
-
-  OdometryEstimate estimate = predicted_from_;
-  const double ahead = sample.stamp - predicted_from_.stamp;
-  estimate.stamp = sample.stamp;
-  estimate.T_odom_imu = predicted_.T_odom_imu();
-  estimate.velocity_odom = predicted_.velocity;
-  estimate.angular_velocity_imu = sample.angular_velocity - predicted_.gyro_bias;
-  estimate.pose_covariance.topLeftCorner<3, 3>() +=
-      ahead * ahead * predicted_from_.twist_covariance.topLeftCorner<3, 3>();
-  estimate.pose_covariance.bottomRightCorner<3, 3>().diagonal().array() +=
-      config_.imu.gyro_noise * config_.imu.gyro_noise * ahead;
-  return estimate;
 }
 
 }  // namespace hv::lio

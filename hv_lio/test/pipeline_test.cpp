@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "box_room.h"
+#include "hv_lio/imu_predictor.h"
 
 namespace hv::lio {
 namespace {
@@ -46,6 +47,7 @@ struct Drive {
   explicit Drive(const LioConfig& config = LioConfig()) : pipeline(config) {}
 
   Pipeline pipeline;
+  ImuPredictor predictor{ImuNoiseConfig()};
   BoxRoom room;
   std::mt19937 random{7};
   std::function<bool(ImuSample&)> imu_hook = [](ImuSample&) { return true; };
@@ -56,6 +58,7 @@ struct Drive {
   void Collect() {
     while (const std::optional<ScanResult> result = pipeline.ProcessNext()) {
       results.push_back(*result);
+      if (result->status == ScanStatus::kTracking) predictor.Anchor(result->estimate);
     }
   }
 
@@ -66,7 +69,8 @@ struct Drive {
       const double time = kStart + tick / 200.0;
       ImuSample sample = Swing::ImuAt(time);
       if (imu_hook(sample)) {
-        if (const auto prediction = pipeline.AddImu(sample)) predictions.push_back(*prediction);
+        pipeline.AddImu(sample);
+        if (const auto prediction = predictor.Add(sample)) predictions.push_back(*prediction);
       }
       if (tick % 20 == 0) {
         Scan scan = room.Sweep(time, Swing::PoseAt, 0.01, random);

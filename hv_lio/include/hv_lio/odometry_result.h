@@ -23,6 +23,7 @@ struct OdometryEstimate {
   Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();             ///< [rad/s]
   Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();            ///< [m/s^2]
   Eigen::Vector3d gravity_odom = Eigen::Vector3d::Zero();          ///< [m/s^2]
+  double accel_scale = 1.0;  ///< accelerometer readings times this are m/s^2
   /// x y z rx ry rz; translation and rotation both expressed in odom axes [m^2, rad^2].
   Matrix6d pose_covariance = Matrix6d::Zero();
   /// vx vy vz (imu axes) wx wy wz (imu axes) [(m/s)^2, (rad/s)^2].

@@ -42,8 +42,7 @@ class Pipeline {
   explicit Pipeline(const LioConfig& config);
 
   /// Hands in one IMU sample (acceleration in m/s^2 or g; recognised at the start). Never throws.
-  /// Returns the prediction at its stamp once odometry runs (IMU-rate output), else nullopt.
-  std::optional<OdometryEstimate> AddImu(const ImuSample& sample);
+  void AddImu(const ImuSample& sample);
 
   /// Hands in one scan in the LiDAR frame; `decode_ms` is added to its preprocessing time.
   void AddScan(Scan scan, double decode_ms = 0.0);
@@ -80,8 +79,6 @@ class Pipeline {
   std::vector<ImuStep> StepsTo(const Scan& scan);
   void FollowClock(Time stamp, const char* source);
   void Supervise(ScanResult& result);
-  void RestartPrediction(const OdometryEstimate& estimate);
-  std::optional<OdometryEstimate> Predict(const ImuSample& sample);
   void Note(std::string event);
 
   LioConfig config_;
@@ -90,9 +87,6 @@ class Pipeline {
   ConstantVelocityModel constant_velocity_;
   ImuBuffer imu_;
   std::deque<WaitingScan> scans_;
-  std::optional<ImuSample> predicted_to_;
-  NavState predicted_;
-  OdometryEstimate predicted_from_;
   int imu_only_streak_ = 0;
   PipelineCounters counters_;
   std::vector<std::string> events_;

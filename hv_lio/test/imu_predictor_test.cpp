@@ -1,4 +1,4 @@
-#include "imu_predictor.h"
+#include "hv_lio/imu_predictor.h"
 
 #include <cmath>
 
@@ -17,8 +17,9 @@ ImuSample SampleAt(double t, double unit = 1.0) {
   return sample;
 }
 
-OdometryEstimate EstimateAt(double t) {
+OdometryEstimate EstimateAt(double t, double unit = 1.0) {
   OdometryEstimate estimate;
+  estimate.accel_scale = unit;
   estimate.stamp = Time::FromSeconds(t);
   estimate.T_odom_imu.translation().x() = 0.5 * t * t;
   estimate.velocity_odom = {t, 0.0, 0.0};
@@ -37,7 +38,7 @@ TEST(ImuPredictor, FollowsTheMotionFromALateAnchor) {
   for (const double unit : {1.0, kGravity}) {
     ImuPredictor predictor({});
     for (int i = 0; i <= 40; ++i) predictor.Add(SampleAt(0.01 * i, unit));
-    predictor.Anchor(EstimateAt(0.305));  // between two samples, and older than the newest
+    predictor.Anchor(EstimateAt(0.305, unit));  // between two samples, and older than the newest
     const auto prediction = predictor.Add(SampleAt(0.41, unit));
     ASSERT_TRUE(prediction);
     EXPECT_EQ(prediction->stamp, Time::FromSeconds(0.41));

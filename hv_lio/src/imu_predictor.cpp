@@ -1,11 +1,7 @@
-#include "imu_predictor.h"
+#include "hv_lio/imu_predictor.h"
 
 namespace hv::lio {
 namespace {
-
-constexpr double kStandardGravity = 9.80665;  // [m/s^2]
-constexpr double kLargestMeanInG = 3.0;       // a mean reading below this is in g
-constexpr std::size_t kUnitSamples = 1000;    // readings the unit is judged on
 
 NavState StateOf(const OdometryEstimate& estimate) {
   NavState state;
@@ -20,17 +16,11 @@ NavState StateOf(const OdometryEstimate& estimate) {
 
 }  // namespace
 
-std::optional<OdometryEstimate> ImuPredictor::Add(const ImuSample& raw) {
-  if (!raw.angular_velocity.allFinite() || !raw.acceleration.allFinite()) return std::nullopt;
+std::optional<OdometryEstimate> ImuPredictor::Add(const ImuSample& sample) {
+  if (!sample.angular_velocity.allFinite() || !sample.acceleration.allFinite()) {
+    return std::nullopt;
+  }
   const std::lock_guard<std::mutex> lock(mutex_);
-  if (acceleration_count_ < kUnitSamples) {
-    acceleration_sum_ += raw.acceleration.norm();
-    ++acceleration_count_;
-  }
-  ImuSample sample = raw;
-  if (acceleration_sum_ < kLargestMeanInG * static_cast<double>(acceleration_count_)) {
-    sample.acceleration *= kStandardGravity;
-  }
   if (!samples_.empty() && sample.stamp - samples_.back().stamp < -kMaxPrediction) {
     samples_.clear();
     anchor_.reset();
@@ -50,7 +40,8 @@ void ImuPredictor::Anchor(const OdometryEstimate& estimate) {
   while (samples_.size() > 1 && samples_[1].stamp <= estimate.stamp) samples_.pop_front();
   if (samples_.empty()) {
     last_ = {};
-    last_.acceleration = state_.rotation.transpose() * -state_.gravity + state_.accel_bias;
+    last_.acceleration = (state_.rotation.transpose() * -state_.gravity + state_.accel_bias) /
+                         estimate.accel_scale;
     last_.angular_velocity = estimate.angular_velocity_imu + estimate.gyro_bias;
   } else {
     last_ = samples_.front();
@@ -70,7 +61,7 @@ void ImuPredictor::Step(const ImuSample& sample) {
   if (dt <= 0.0) return;
   ImuStep step;
   step.angular_velocity = 0.5 * (last_.angular_velocity + sample.angular_velocity);
-  step.acceleration = 0.5 * (last_.acceleration + sample.acceleration);
+  step.acceleration = 0.5 * anchor_->accel_scale * (last_.acceleration + sample.acceleration);
   step.dt = dt;
   PropagateState(step, state_);
   last_ = sample;

@@ -41,8 +41,6 @@ class ImuPredictor {
   std::optional<OdometryEstimate> anchor_;
   ImuSample last_;   // latest sample that `state_` includes
   NavState state_;   // at last_.stamp
-  double acceleration_sum_ = 0.0;  // norms, to recognise readings in g
-  std::size_t acceleration_count_ = 0;
 };
 
 }  // namespace hv::lio
