@@ -44,6 +44,6 @@ cat <<END
   trajectory.png   the path and its height
   error.png        the path against the truth
   error.txt        the table above
-  run/             odometry.tum, timing.csv, summary.json, config.yaml
+  run/             odometry.tum, timing.csv, covariance.csv, summary.json, config.yaml
   recording/       the bag ($(du -sh "$demo/recording" | cut -f1)) and truth.tum; delete it at will
 END
