@@ -24,6 +24,12 @@ std::string FieldList(const PointCloudView& cloud) {
   return text;
 }
 
+/// The decoder for the statistics of the clouds.
+PointCloudDecoderConfig EveryPoint(PointCloudDecoderConfig config) {
+  config.point_stride = 1;
+  return config;
+}
+
 /// The decoder for the stretch that odometry runs on: fewer points do.
 PointCloudDecoderConfig Thinned(PointCloudDecoderConfig config) {
   config.point_stride = std::max(config.point_stride, 4);
@@ -37,7 +43,7 @@ class Collector {
       : config_(config),
         options_(options),
         begin_(begin),
-        decoder_(config.points),
+        decoder_(EveryPoint(config.points)),
         thin_decoder_(Thinned(config.points)) {}
 
   bool AddCloud(const BagCloud& cloud) {
