@@ -100,13 +100,6 @@ std::vector<MotionKnot> Odometry::PropagateKnots(const std::vector<ImuStep>& ste
   return knots;
 }
 
-void Odometry::Propagate(const std::vector<ImuStep>& steps) {
-  double elapsed = 0.0;
-  for (const ImuStep& step : steps) elapsed += step.dt;
-  PropagateKnots(steps, 0.0);
-  stamp_ = stamp_ + elapsed;
-}
-
 void Odometry::Settle() {
   map_.Clear();
   if (--settling_scans_ > 0) return;

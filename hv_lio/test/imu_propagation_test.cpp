@@ -24,6 +24,19 @@ NavState Propagated(const ImuStep& step, NavState state) {
   return state;
 }
 
+/// Compares the analytic Jacobian with central differences.
+void CheckJacobian(const ImuStep& step, const NavState& state) {
+  const ErrorMatrix jacobian = PropagationJacobian(step, state);
+  const NavState nominal = Propagated(step, state);
+  for (int column = 0; column < kErrorDim; ++column) {
+    const ErrorVector delta = 1e-5 * ErrorVector::Unit(column);
+    const ErrorVector numeric = (Propagated(step, state.Plus(delta)).Minus(nominal) -
+                                 Propagated(step, state.Plus(-delta)).Minus(nominal)) /
+                                2e-5;
+    EXPECT_LT((jacobian.col(column) - numeric).norm(), 2e-6) << "column " << column;
+  }
+}
+
 class PropagationTest : public ::testing::TestWithParam<double> {};
 
 TEST_P(PropagationTest, JacobianMatchesDifferences) {
@@ -31,15 +44,7 @@ TEST_P(PropagationTest, JacobianMatchesDifferences) {
   for (int i = 0; i < 20; ++i) {
     const NavState state = RandomState(random);
     const ImuStep step = RandomStep(random, GetParam());
-    const ErrorMatrix jacobian = PropagationJacobian(step, state);
-    const NavState nominal = Propagated(step, state);
-    for (int column = 0; column < kErrorDim; ++column) {
-      const ErrorVector delta = 1e-5 * ErrorVector::Unit(column);
-      const ErrorVector numeric = (Propagated(step, state.Plus(delta)).Minus(nominal) -
-                                   Propagated(step, state.Plus(-delta)).Minus(nominal)) /
-                                  2e-5;
-      EXPECT_LT((jacobian.col(column) - numeric).norm(), 2e-6) << "column " << column;
-    }
+    CheckJacobian(step, state);
   }
 }
 
@@ -95,15 +100,7 @@ TEST(PropagationTest, JacobianOfAMissingReadingMatchesDifferences) {
   const NavState state = RandomState(random);
   ImuStep step = RandomStep(random, 0.02);
   step.quality = ImuQuality::kMissing;
-  const ErrorMatrix jacobian = PropagationJacobian(step, state);
-  const NavState nominal = Propagated(step, state);
-  for (int column = 0; column < kErrorDim; ++column) {
-    const ErrorVector delta = 1e-5 * ErrorVector::Unit(column);
-    const ErrorVector numeric = (Propagated(step, state.Plus(delta)).Minus(nominal) -
-                                 Propagated(step, state.Plus(-delta)).Minus(nominal)) /
-                                2e-5;
-    EXPECT_LT((jacobian.col(column) - numeric).norm(), 2e-6) << "column " << column;
-  }
+  CheckJacobian(step, state);
 }
 
 TEST(PropagationTest, SaturatedReadingsAreTrustedLessAndMissingOnesLeast) {

@@ -30,9 +30,6 @@ class Odometry {
   /// to the scan end), deskews, updates, extends the map.
   ScanResult Process(const Scan& scan, const std::vector<ImuStep>& steps);
 
-  /// Propagates state and covariance without a scan.
-  void Propagate(const std::vector<ImuStep>& steps);
-
   /// Moves the clock without moving the state, after a jump of the sensor clock: up to a second of
   /// motion may have been missed, and the covariance says so.
   void MoveClock(Time stamp);
@@ -44,7 +41,6 @@ class Odometry {
   OdometryEstimate Estimate(const Eigen::Vector3d& angular_velocity) const;
 
   const NavState& state() const { return state_; }
-  const ErrorMatrix& covariance() const { return covariance_; }
   double accel_scale() const { return accel_scale_; }
   const VoxelMap& map() const { return map_; }
 
