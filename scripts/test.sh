@@ -14,7 +14,7 @@ source "$build/devel/setup.bash"
 set -u
 rm -rf "$build/test_results"
 status=0
-ctest --test-dir "$build" --output-on-failure --no-tests=error -j2 2>&1 |
+ctest --test-dir "$build" --output-on-failure --no-tests=error -j1 2>&1 |
   tee "$build/ctest.log" || status=$?
 
 # One ctest entry is a whole test program; count the single tests from their result files. Those of
