@@ -12,7 +12,7 @@ import rostest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from recording import (  # noqa: E402
-    CONFIG, HV_LIO_NODE, HV_SLAM, POINTS, RECORDING, Player, odometry_collector, wait_until)
+    CONFIG, HV_LIO_NODE, HV_SLAM, IMU, POINTS, RECORDING, Player, odometry_collector, wait_until)
 
 
 def rows_of(path):
@@ -59,13 +59,13 @@ class OdometryStart(unittest.TestCase):
         self.assertIn("/nowhere.yaml", self.refusal_of("_config_file:=/nowhere.yaml"))
         rospy.delete_param("/started")
 
-    def trajectory_with(self, config):
-        """What a node with this configuration saves when it is interrupted after the recording."""
+    def trajectory_with(self, config, topics=(POINTS, IMU)):
+        """What a node that listens to `topics` saves when it is interrupted after the recording."""
         saved = os.path.join(self.folder.name, "new", "node.tum")
         player = Player(RECORDING)
         odometry = odometry_collector()
         process = self.start_with(config, "_save_trajectory:=" + saved)
-        self.assertTrue(player.wait_for_node((POINTS,)) and wait_until(odometry.connected))
+        self.assertTrue(player.wait_for_node(topics) and wait_until(odometry.connected))
         player.play(player.messages, lambda: len(odometry))
         sent = sum(topic == POINTS for topic, _ in player.messages)
         self.assertTrue(wait_until(lambda: len(odometry) > 0.75 * sent))
@@ -77,6 +77,7 @@ class OdometryStart(unittest.TestCase):
         output, _ = process.communicate(timeout=5)
         self.assertEqual(process.returncode, 0, output)
         rospy.delete_param("/started")
+        player.close()
         return rows_of(saved)
 
     def offline_trajectory(self):
@@ -99,7 +100,8 @@ class OdometryStart(unittest.TestCase):
         self.expect_equal(online, self.offline_trajectory(), 2e-3)
 
     def test_runs_without_an_imu(self):
-        online = self.trajectory_with(self.config_with("odometry:\n  use_imu: false\n"))
+        online = self.trajectory_with(self.config_with("odometry:\n  use_imu: false\n"),
+                                      topics=(POINTS,))
         self.assertNotIn("/odometry_imu", dict(rospy.get_published_topics()))
         last = online[max(online)]
         self.assertLess(max(abs(value) for value in last[:3]), 10.0)

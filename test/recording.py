@@ -104,6 +104,11 @@ class Player:
         return wait_until(lambda: all(self._publishers[topic].get_num_connections() > 0
                                       for topic in topics))
 
+    def close(self):
+        """Lets the next player start without the connections of this one."""
+        for publisher in self._publishers.values():
+            publisher.unregister()
+
     def clouds(self, start=0, end=None):
         """The messages that belong to clouds number `start` to `end`: those clouds and the IMU
         samples around them."""

@@ -31,21 +31,19 @@ void InitializerConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("moving_start_after_s", moving_start_after_s,
                 "start in motion when the sensor has not rested for this long; 0 = never [s]");
   visitor.Field("moving_start_scans", moving_start_scans,
-                "scans that settle tilt and velocity after a start in motion; the map begins anew "
-                "behind them");
+                "newest scans that a start in motion finds tilt and velocity from");
   visitor.Field("gravity_mps2", gravity_mps2, "norm of gravity at the place [m/s^2]");
 }
 
 void InitializerConfig::Validate(ConfigProblems& problems) const {
-  problems.Require(static_duration_s > 0.0, "initialization.static_duration_s",
-                   "must be positive");
+  problems.Require(static_duration_s > 0.0, "initialization.static_duration_s", "must be positive");
   problems.Require(static_gyro_std > 0.0, "initialization.static_gyro_std", "must be positive");
   problems.Require(static_accel_std > 0.0, "initialization.static_accel_std", "must be positive");
   problems.Require(moving_start_after_s == 0.0 || moving_start_after_s >= static_duration_s,
                    "initialization.moving_start_after_s",
                    "must be 0 or at least static_duration_s");
-  problems.Require(moving_start_scans >= 0, "initialization.moving_start_scans",
-                   "must not be negative");
+  problems.Require(moving_start_scans >= 3, "initialization.moving_start_scans",
+                   "must be at least 3");
   problems.Require(gravity_mps2 > 9.7 && gravity_mps2 < 9.9, "initialization.gravity_mps2",
                    "must lie between 9.7 and 9.9");
 }
@@ -60,6 +58,7 @@ struct Initializer::Statistics {
 };
 
 void Initializer::Add(const ImuSample& sample) {
+  if (!samples_.empty() && sample.stamp <= samples_.back().stamp) return;
   samples_.push_back(sample);
   const double kept = std::max(config_.static_duration_s, config_.moving_start_after_s) + 1.0;
   while (samples_.back().stamp - samples_.front().stamp > kept) samples_.pop_front();

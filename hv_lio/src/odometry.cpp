@@ -51,7 +51,8 @@ void Odometry::Start(Time stamp, const InitialState& initial) {
   }
   stamp_ = stamp;
   initialized_ = true;
-  settling_scans_ = initial.moving ? config_.initialization.moving_start_scans : 0;
+  settling_ = initial.moving;
+  map_.Clear();
 }
 
 void Odometry::MoveClock(Time stamp) {
@@ -100,21 +101,6 @@ std::vector<MotionKnot> Odometry::PropagateKnots(const std::vector<ImuStep>& ste
   return knots;
 }
 
-void Odometry::Settle() {
-  map_.Clear();
-  if (--settling_scans_ > 0) return;
-  const Eigen::Matrix3d level =
-      Eigen::Quaterniond::FromTwoVectors(state_.gravity, -Eigen::Vector3d::UnitZ())
-          .toRotationMatrix();
-  state_.rotation = level * state_.rotation;
-  state_.velocity = level * state_.velocity;
-  state_.gravity = level * state_.gravity;
-  ErrorMatrix carry = ErrorMatrix::Identity();
-  carry.block<3, 3>(ErrorIndex::kPosition, ErrorIndex::kPosition) = level;
-  carry.block<3, 3>(ErrorIndex::kVelocity, ErrorIndex::kVelocity) = level;
-  covariance_ = (carry * covariance_ * carry.transpose()).eval();
-}
-
 void Odometry::WidenDegenerate(const UpdateSummary& update, double duration) {
   constexpr int kVelocity = ErrorIndex::kVelocity;
   const double density = config_.update.degenerate_accel_noise;
@@ -138,19 +124,19 @@ ScanResult Odometry::Process(const Scan& scan, const std::vector<ImuStep>& steps
     result.deskewed = std::move(deskewed);
     result.timing.preprocess_ms = timer.Lap();
     const bool first = map_.size() == 0;
-    const bool settling = settling_scans_ > 0;
-    if (!first) result.update = update_.Apply(cells, map_, settling, state_, covariance_);
+    if (!first) result.update = update_.Apply(cells, map_, settling_, state_, covariance_);
     WidenDegenerate(result.update, elapsed);
     result.timing.update_ms = timer.Lap();
     const bool corrected = result.update.residuals > 0;
-    if (settling) Settle();
+    if (settling_) map_.Clear();
     if (first || corrected) map_.Insert(cells, state_.T_odom_imu());
     result.timing.map_ms = timer.Lap();
     const bool tracking = corrected || (first && !cells.empty());
     result.status = tracking ? ScanStatus::kTracking : ScanStatus::kImuOnly;
   });
   if (result.status == ScanStatus::kImuOnly) {
-    result.reason = scan.points.empty() ? "scan has no usable points" : "too few matches in the map";
+    result.reason =
+        scan.points.empty() ? "scan has no usable points" : "too few matches in the map";
   }
   result.estimate = Estimate(motion.knots.back().angular_velocity);
   result.voxels = map_.size();

@@ -98,8 +98,11 @@ ScanResult Pipeline::ProcessOldest() {
   ScanResult result;
   result.scan_start = scan.stamp;
   result.estimate.stamp = scan.end();
-  const bool started = odometry_.initialized() || TryStart(scan, result);
-  if (started) result = Track(scan);
+  if (odometry_.initialized()) {
+    result = Track(scan);
+  } else {
+    TryStart(scan, result);
+  }
   result.timing.preprocess_ms += waiting.decode_ms;
   if (result.status == ScanStatus::kDropped) ++counters_.scans_dropped;
   if (result.status == ScanStatus::kImuOnly) ++counters_.scans_imu_only;
@@ -107,31 +110,59 @@ ScanResult Pipeline::ProcessOldest() {
   return result;
 }
 
-bool Pipeline::TryStart(const Scan& scan, ScanResult& result) {
+void Pipeline::TryStart(const Scan& scan, ScanResult& result) {
   result.status = ScanStatus::kInitializing;
   if (scan.points.empty()) {
     result.reason = "waiting for a scan with points";
-    return false;
+    return;
   }
   if (!config_.use_imu) {
     odometry_.Start(scan.stamp, constant_velocity_.Start());
-    return true;
+    result = Track(scan);
+    return;
   }
   for (const ImuSample& sample : imu_.samples()) {
     if (sample.stamp <= scan.end()) initializer_.Add(sample);
   }
-  imu_.DropBefore(scan.end());
+  RememberForStart(scan);
   const std::optional<InitialState> initial = initializer_.TryInitialize();
   if (!initial) {
     result.reason = initializer_.WaitingFor();
-    return false;
+    return;
   }
-  odometry_.Start(scan.end(), *initial);
-  initializer_.Clear();
   if (initial->accel_scale != 1.0) Note("accelerometer reads g, not m/s^2: converted");
-  Note(initial->moving ? "started in motion: tilt and velocity settle within seconds"
-                       : "started at rest");
-  return true;
+  if (initial->moving) {
+    result = StartInMotion(StartWindow(initial->accel_scale), *initial, odometry_).back();
+    Note("started in motion");
+  } else {
+    odometry_.Start(scan.end(), *initial);
+    result = Track(scan);
+    Note("started at rest");
+  }
+  ForgetStart();
+}
+
+void Pipeline::RememberForStart(const Scan& scan) {
+  const auto limit = static_cast<std::size_t>(config_.initialization.moving_start_scans);
+  if (!start_scans_.empty() && scan.end() <= start_scans_.back().end()) return;
+  start_scans_.push_back(scan);
+  while (start_scans_.size() > limit) start_scans_.pop_front();
+  imu_.DropBefore(start_scans_.front().stamp);
+}
+
+std::vector<WindowScan> Pipeline::StartWindow(double accel_scale) const {
+  std::vector<WindowScan> window;
+  Time from = start_scans_.front().stamp;
+  for (const Scan& scan : start_scans_) {
+    window.push_back({scan, imu_.Steps(from, scan.end(), accel_scale)});
+    from = scan.end();
+  }
+  return window;
+}
+
+void Pipeline::ForgetStart() {
+  initializer_.Clear();
+  start_scans_.clear();
 }
 
 std::vector<ImuStep> Pipeline::StepsTo(const Scan& scan) {
@@ -145,8 +176,8 @@ std::vector<ImuStep> Pipeline::StepsTo(const Scan& scan) {
 ScanResult Pipeline::Track(const Scan& scan) {
   const double lag = odometry_.stamp() - scan.end();
   if (lag > config_.robustness.clock_jump_s) FollowClock(scan.stamp, "LiDAR");
-  const bool silent = imu_.LongestGap(odometry_.stamp(), scan.end()) >
-                      config_.robustness.clock_jump_s;
+  const bool silent =
+      imu_.LongestGap(odometry_.stamp(), scan.end()) > config_.robustness.clock_jump_s;
   if (scan.stamp - odometry_.stamp() > config_.robustness.clock_jump_s && silent) {
     FollowClock(scan.stamp, "sensor");
   }
@@ -172,13 +203,12 @@ void Pipeline::FollowClock(Time stamp, const char* source) {
     const double distance = waiting.scan.stamp - stamp;
     return distance > -1.0 && distance < config_.robustness.clock_jump_s;
   };
-  const auto foreign =
-      std::remove_if(scans_.begin(), scans_.end(),
-                     [&](const WaitingScan& waiting) { return !belongs(waiting); });
+  const auto foreign = std::remove_if(
+      scans_.begin(), scans_.end(), [&](const WaitingScan& waiting) { return !belongs(waiting); });
   counters_.scans_dropped += static_cast<std::size_t>(scans_.end() - foreign);
   scans_.erase(foreign, scans_.end());
   if (imu_.newest() && *imu_.newest() > stamp + config_.robustness.clock_jump_s) imu_.Clear();
-  initializer_.Clear();
+  ForgetStart();
   constant_velocity_.Clear();
   if (config_.robustness.on_clock_jump == "reset") {
     Reset(true);
@@ -193,8 +223,8 @@ void Pipeline::Supervise(ScanResult& result) {
   if (!(speed < config_.robustness.max_speed_mps)) {
     result.reason = Line("diverged: speed %.1f m/s%s", speed, ", started anew");
   } else if (imu_only_streak_ >= config_.robustness.max_imu_only_scans) {
-    result.reason = Line("no match with the map for %.0f scans%s", imu_only_streak_,
-                         ", started anew");
+    result.reason =
+        Line("no match with the map for %.0f scans%s", imu_only_streak_, ", started anew");
   } else {
     return;
   }
@@ -206,7 +236,7 @@ void Pipeline::Supervise(ScanResult& result) {
 void Pipeline::Reset(bool keep_pose) {
   ++counters_.resets;
   odometry_.Reset(keep_pose);
-  initializer_.Clear();
+  ForgetStart();
   constant_velocity_.Clear();
   imu_only_streak_ = 0;
 }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPoseStep = 5e-4;
 constexpr std::size_t kPointsPerTask = 4096;
-constexpr std::size_t kFirstTableSize = 1U << 14U;
+constexpr std::size_t kFirstTableSize = 1U << 16U;
 
 /// Rigid motion as a function of time, linear on one step: p_end = (a + s b) p + (c + s d), s the
 /// seconds since the step's start.
@@ -68,8 +68,9 @@ Point MovePoint(const Point& point, const std::vector<LinearMotion>& pieces) {
 std::uint64_t PackKey(float x, float y, float z, float inverse_size) {
   constexpr std::int64_t kOffset = 1 << 20;
   const auto part = [inverse_size](float value) {
-    return static_cast<std::uint64_t>(
-        static_cast<std::int64_t>(std::floor(value * inverse_size)) + kOffset) & 0x1FFFFFU;
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value * inverse_size)) +
+                                      kOffset) &
+           0x1FFFFFU;
   };
   return (part(x) << 42U) | (part(y) << 21U) | part(z);
 }
@@ -114,7 +115,9 @@ std::vector<Point> Deskew(const Scan& scan, const ScanMotion& motion, const Pose
   return moved;
 }
 
-CellGrid::CellGrid(const PreprocessConfig& config) : config_(config), table_(kFirstTableSize) {}
+CellGrid::CellGrid(const PreprocessConfig& config) : config_(config), table_(kFirstTableSize) {
+  sums_.reserve(kFirstTableSize / 2);
+}
 
 void CellGrid::Grow() {
   std::vector<Slot> old(table_.size() * 2);

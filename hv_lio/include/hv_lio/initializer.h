@@ -39,6 +39,7 @@ class Initializer {
  public:
   explicit Initializer(const InitializerConfig& config) : config_(config) {}
 
+  /// Samples that are not newer than the last one are ignored.
   void Add(const ImuSample& sample);
   std::optional<InitialState> TryInitialize() const;
 

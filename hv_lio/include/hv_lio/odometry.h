@@ -22,8 +22,9 @@ class Odometry {
   /// Instant of the state: end of the last scan, or the last propagated sample.
   Time stamp() const { return stamp_; }
 
-  /// Starts at `stamp` from an initial state. With a current pose kept by Restart, the pose goes on
-  /// from there.
+  /// Starts at `stamp` from an initial state, with an empty map. With a current pose kept by Reset,
+  /// the pose goes on from there. From `initial.moving` each scan is matched to the one before,
+  /// until the next Start (see StartInMotion).
   void Start(Time stamp, const InitialState& initial);
 
   /// Propagates to the end of the scan with `steps` (their durations add up from the current stamp
@@ -46,7 +47,6 @@ class Odometry {
 
  private:
   std::vector<MotionKnot> PropagateKnots(const std::vector<ImuStep>& steps, double start_time);
-  void Settle();
   void WidenDegenerate(const UpdateSummary& update, double duration);
 
   LioConfig config_;
@@ -61,7 +61,7 @@ class Odometry {
   Time stamp_;
   double accel_scale_ = 1.0;
   bool initialized_ = false;
-  int settling_scans_ = 0;  ///< left of a start in motion
+  bool settling_ = false;  ///< scans are skewed by unknown motion: each is matched to the last
 };
 
 }  // namespace hv::lio

@@ -12,20 +12,21 @@
 #include "hv_lio/imu_buffer.h"
 #include "hv_lio/initializer.h"
 #include "hv_lio/lio_config.h"
-#include "hv_lio/odometry_result.h"
+#include "hv_lio/moving_start.h"
 #include "hv_lio/odometry.h"
+#include "hv_lio/odometry_result.h"
 
 namespace hv::lio {
 
 /// Counts of everything unusual since construction, for diagnostics and summaries.
 struct PipelineCounters {
-  std::size_t scans = 0;             ///< handed in
+  std::size_t scans = 0;  ///< handed in
   std::size_t scans_tracked = 0;
   std::size_t scans_imu_only = 0;
-  std::size_t scans_dropped = 0;     ///< too old, without IMU, or overrun of the queue
+  std::size_t scans_dropped = 0;  ///< too old, without IMU, or overrun of the queue
   std::size_t imu_samples = 0;
   std::size_t imu_out_of_order = 0;
-  std::size_t imu_invalid = 0;       ///< not finite
+  std::size_t imu_invalid = 0;  ///< not finite
   std::size_t imu_saturated = 0;
   std::size_t imu_gaps = 0;
   std::size_t clock_jumps = 0;
@@ -75,7 +76,10 @@ class Pipeline {
   bool CoveredByImu(const Scan& scan) const;
   ScanResult ProcessOldest();
   ScanResult Track(const Scan& scan);
-  bool TryStart(const Scan& scan, ScanResult& result);
+  void TryStart(const Scan& scan, ScanResult& result);
+  void RememberForStart(const Scan& scan);
+  std::vector<WindowScan> StartWindow(double accel_scale) const;
+  void ForgetStart();
   std::vector<ImuStep> StepsTo(const Scan& scan);
   void FollowClock(Time stamp, const char* source);
   void Supervise(ScanResult& result);
@@ -84,6 +88,7 @@ class Pipeline {
   LioConfig config_;
   Odometry odometry_;
   Initializer initializer_;
+  std::deque<Scan> start_scans_;  ///< newest scans before the start, for one in motion
   ConstantVelocityModel constant_velocity_;
   ImuBuffer imu_;
   std::deque<WaitingScan> scans_;

@@ -43,8 +43,8 @@ class ScanUpdate {
 
   /// Updates `state` and `covariance`. Leaves both alone, and says so in `residuals`, when fewer
   /// than min_residuals cells match. `settling`: velocity and tilt are still unknown, so more
-  /// iterations are made and no direction is left to the IMU. Parallel with TBB; the result does not depend on the number of
-  /// threads.
+  /// iterations are made and no direction is left to the IMU. Parallel with TBB; the result does
+  /// not depend on the number of threads.
   UpdateSummary Apply(const std::vector<SurfaceCell>& cells, const VoxelMap& map, bool settling,
                       NavState& state, ErrorMatrix& covariance) const;
 
