@@ -28,7 +28,6 @@ struct EngineCounters {
   std::string time_layout;  ///< what was recognised about point times, empty before
   std::string last_decode_error;
   /// Times that the map was forgotten: no odometry edge across.
-  std::size_t segments() const { return pipeline.resets + pipeline.clock_jumps; }
 };
 
 /// Decoder and pipeline behind one lock. Results are returned, never published under the lock.

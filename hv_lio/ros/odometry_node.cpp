@@ -174,7 +174,7 @@ void OdometryNode::Run() {
   if (!input || !Prepare()) return;
   for (; input; input = queue_.Pop()) Handle(*input);
   const EngineCounters counters = engine_->counters();
-  for (const ScanResult& result : engine_->Finish()) Deliver(result, counters);
+  for (const ScanResult& result : engine_->Finish()) Deliver(result);
 }
 
 void OdometryNode::Handle(const InputQueue::Input& input) {
@@ -182,11 +182,11 @@ void OdometryNode::Handle(const InputQueue::Input& input) {
   if (!input.cloud && results.empty()) return;
   const EngineCounters counters = engine_->counters();
   ReportChanges(counters);
-  for (const ScanResult& result : results) Deliver(result, counters);
+  for (const ScanResult& result : results) Deliver(result);
   health_.OnCounters(counters, queue_.counters());
 }
 
-void OdometryNode::Deliver(const ScanResult& result, const EngineCounters& counters) {
+void OdometryNode::Deliver(const ScanResult& result) {
   health_.OnScan(result);
   const bool has_pose =
       result.status == ScanStatus::kTracking || result.status == ScanStatus::kImuOnly;
@@ -196,7 +196,7 @@ void OdometryNode::Deliver(const ScanResult& result, const EngineCounters& count
     trajectory_.Append(result.estimate.stamp, result.estimate.T_odom_imu);
   }
   if (!ros::ok()) return;
-  publisher_.PublishScan(result, counters.segments());
+  publisher_.PublishScan(result);
   if (publisher_.WantsVoxels(result.estimate.stamp)) {
     const auto max = static_cast<std::size_t>(parameters_.config.output.voxels_max);
     publisher_.PublishVoxels(engine_->ViewVoxels(max), result.estimate.stamp);
@@ -204,14 +204,14 @@ void OdometryNode::Deliver(const ScanResult& result, const EngineCounters& count
 }
 
 void OdometryNode::ReportChanges(const EngineCounters& counters) {
-  const std::size_t faults = counters.pipeline.imu_gaps + counters.segments();
+  const std::size_t faults = counters.pipeline.imu_gaps + counters.pipeline.segments();
   for (const std::string& event : engine_->TakeEvents()) {
     if (faults == faults_) ROS_INFO_STREAM(event);
     if (faults != faults_) ROS_WARN_STREAM_THROTTLE(0.2, event);
   }
   faults_ = faults;
-  if (counters.segments() != segments_) predictor_.Clear();
-  segments_ = counters.segments();
+  if (counters.pipeline.segments() != segments_) predictor_.Clear();
+  segments_ = counters.pipeline.segments();
   if (!time_layout_told_ && !counters.time_layout.empty()) {
     ROS_INFO_STREAM(counters.time_layout);
     time_layout_told_ = true;

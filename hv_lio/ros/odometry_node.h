@@ -52,7 +52,7 @@ class OdometryNode {
   bool Prepare();
   std::optional<Pose> WaitForExtrinsic(FrameLookup& frames);
   void Handle(const InputQueue::Input& input);
-  void Deliver(const ScanResult& result, const EngineCounters& counters);
+  void Deliver(const ScanResult& result);
   void ReportChanges(const EngineCounters& counters);
   void SaveTrajectory() const;
   std::string LidarFrame() const;

@@ -1,7 +1,5 @@
 #include "odometry_publisher.h"
 
-#include <cmath>
-
 #include <hv_msgs/Keyframe.h>
 #include <nav_msgs/Odometry.h>
 #include <nav_msgs/Path.h>
@@ -32,19 +30,21 @@ std::vector<geometry_msgs::Vector3> ToMessages(const std::vector<Eigen::Vector3d
   return messages;
 }
 
-hv_msgs::KeyframePtr MakeKeyframe(const ScanResult& result, const OutputConfig& config) {
-  const OdometryEstimate& estimate = result.estimate;
+hv_msgs::KeyframePtr ToMessage(const Keyframe& keyframe, Time scan_start,
+                               const OutputConfig& config) {
   auto message = boost::make_shared<hv_msgs::Keyframe>();
-  message->header.stamp = ToRos(estimate.stamp);
+  message->header.stamp = ToRos(keyframe.stamp);
   message->header.frame_id = config.odom_frame;
   message->child_frame_id = config.imu_frame;
-  message->scan_start = ToRos(result.scan_start);
-  message->pose.pose = ToPoseMessage(estimate.T_odom_imu);
-  CopyCovariance(estimate.pose_covariance, message->pose.covariance);
-  message->gravity = ToVectorMessage(estimate.gravity_odom);
-  message->degenerate_translation = ToMessages(result.update.degenerate_translation);
-  message->degenerate_rotation = ToMessages(result.update.degenerate_rotation);
-  message->cloud = *ToCloudMessage(*result.deskewed);
+  message->id = keyframe.id;
+  message->segment = keyframe.segment;
+  message->scan_start = ToRos(scan_start);
+  message->pose.pose = ToPoseMessage(keyframe.T_odom_imu);
+  CopyCovariance(keyframe.covariance, message->pose.covariance);
+  message->gravity = ToVectorMessage(keyframe.gravity_odom);
+  message->degenerate_translation = ToMessages(keyframe.degenerate_translation);
+  message->degenerate_rotation = ToMessages(keyframe.degenerate_rotation);
+  message->cloud = *ToCloudMessage(keyframe.points);
   message->cloud.header.stamp = message->header.stamp;
   message->cloud.header.frame_id = config.imu_frame;
   return message;
@@ -54,7 +54,8 @@ hv_msgs::KeyframePtr MakeKeyframe(const ScanResult& result, const OutputConfig& 
 
 OdometryPublisher::OdometryPublisher(ros::NodeHandle nh, const OutputConfig& config, bool with_imu)
     : config_(config),
-      path_(config.path_min_distance_m, static_cast<std::size_t>(config.path_max_poses)) {
+      path_(config.path_min_distance_m, static_cast<std::size_t>(config.path_max_poses)),
+      keyframes_(config.keyframe_distance_m, config.keyframe_angle_deg) {
   odometry_ = nh.advertise<nav_msgs::Odometry>("odometry", 100);
   if (with_imu) odometry_imu_ = nh.advertise<nav_msgs::Odometry>("odometry_imu", 1000);
   cloud_ = nh.advertise<sensor_msgs::PointCloud2>("cloud_registered", 10);
@@ -63,15 +64,13 @@ OdometryPublisher::OdometryPublisher(ros::NodeHandle nh, const OutputConfig& con
   keyframe_ = nh.advertise<hv_msgs::Keyframe>("keyframe", 50);
 }
 
-void OdometryPublisher::PublishScan(const ScanResult& result, std::size_t segment) {
+void OdometryPublisher::PublishScan(const ScanResult& result) {
   if (!HasPose(result.status)) return;
   const BodyEstimate body = MoveToBody(result.estimate, T_base_imu_);
   odometry_.publish(ToOdometryMessage(body, config_.odom_frame, config_.base_frame));
   if (config_.publish_tf) {
     transforms_.sendTransform(ToTransformMessage(body, config_.odom_frame, config_.base_frame));
   }
-  if (segment != segment_) last_keyframe_.reset();
-  segment_ = segment;
   PublishPath(body);
   if (result.status != ScanStatus::kTracking || !result.deskewed) return;
   PublishCloud(result);
@@ -100,23 +99,9 @@ void OdometryPublisher::PublishCloud(const ScanResult& result) const {
 }
 
 void OdometryPublisher::PublishKeyframe(const ScanResult& result) {
-  const Pose& T_odom_imu = result.estimate.T_odom_imu;
-  if (!IsKeyframe(T_odom_imu)) return;
-  last_keyframe_ = T_odom_imu;
-  const std::uint32_t id = keyframe_id_++;
-  if (keyframe_.getNumSubscribers() == 0) return;
-  const hv_msgs::KeyframePtr message = MakeKeyframe(result, config_);
-  message->id = id;
-  message->segment = static_cast<std::uint32_t>(segment_);
-  keyframe_.publish(message);
-}
-
-bool OdometryPublisher::IsKeyframe(const Pose& T_odom_imu) const {
-  if (!last_keyframe_) return true;
-  const double angle_limit = config_.keyframe_angle_deg * M_PI / 180.0;
-  return (T_odom_imu.translation() - last_keyframe_->translation()).norm() >=
-             config_.keyframe_distance_m ||
-         RotationDistance(T_odom_imu, *last_keyframe_) >= angle_limit;
+  const std::optional<Keyframe> keyframe = keyframes_.Add(result);
+  if (!keyframe || keyframe_.getNumSubscribers() == 0) return;
+  keyframe_.publish(ToMessage(*keyframe, result.scan_start, config_));
 }
 
 bool OdometryPublisher::WantsVoxels(Time stamp) const {

@@ -11,6 +11,7 @@
 
 #include "body_estimate.h"
 #include "hv_core/se3.h"
+#include "hv_lio/keyframe_selector.h"
 #include "hv_lio/odometry_result.h"
 #include "hv_lio/system_config.h"
 #include "hv_lio/voxel_view.h"
@@ -28,9 +29,8 @@ class OdometryPublisher {
   /// T_base_imu; identity until set. Not to be called while another thread publishes.
   void SetBaseFrame(const Pose& T_base_imu) { T_base_imu_ = T_base_imu; }
 
-  /// Scans without a pose (initialising, dropped) publish nothing. `segment` counts the times that
-  /// the map was forgotten.
-  void PublishScan(const ScanResult& result, std::size_t segment);
+  /// Scans without a pose (initialising, dropped) publish nothing.
+  void PublishScan(const ScanResult& result);
 
   /// IMU-rate odometry.
   void PublishPrediction(const OdometryEstimate& estimate) const;
@@ -43,7 +43,6 @@ class OdometryPublisher {
   void PublishPath(const BodyEstimate& body);
   void PublishCloud(const ScanResult& result) const;
   void PublishKeyframe(const ScanResult& result);
-  bool IsKeyframe(const Pose& T_odom_imu) const;
 
   const OutputConfig config_;
   ros::Publisher odometry_;
@@ -57,9 +56,7 @@ class OdometryPublisher {
   PathHistory path_;
   std::optional<Time> path_sent_;
   std::optional<Time> voxels_sent_;
-  std::optional<Pose> last_keyframe_;
-  std::size_t segment_ = 0;
-  std::uint32_t keyframe_id_ = 0;
+  KeyframeSelector keyframes_;
 };
 
 }  // namespace hv::lio

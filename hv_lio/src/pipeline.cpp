@@ -103,6 +103,7 @@ ScanResult Pipeline::ProcessOldest() {
   } else {
     TryStart(scan, result);
   }
+  result.segment = static_cast<std::uint32_t>(counters_.segments());
   result.timing.preprocess_ms += waiting.decode_ms;
   if (result.status == ScanStatus::kDropped) ++counters_.scans_dropped;
   if (result.status == ScanStatus::kImuOnly) ++counters_.scans_imu_only;

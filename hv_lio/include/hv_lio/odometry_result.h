@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -72,6 +73,7 @@ struct ScanResult {
   UpdateSummary update;
   ScanTiming timing;
   std::size_t voxels = 0;  ///< root voxels in the map
+  std::uint32_t segment = 0;  ///< grows when the map is dropped or the clock jumps
   Time scan_start;
   /// Deskewed points in the IMU frame at the scan end; Point::time keeps the firing time. Shared so
   /// that publishing threads may hold on to it.

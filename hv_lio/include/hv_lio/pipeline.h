@@ -31,6 +31,9 @@ struct PipelineCounters {
   std::size_t imu_gaps = 0;
   std::size_t clock_jumps = 0;
   std::size_t resets = 0;
+
+  /// Times that the map was forgotten or the clock jumped: no odometry across.
+  std::size_t segments() const { return resets + clock_jumps; }
 };
 
 /// From raw scans and IMU samples, in order of arrival, to odometry: pairs each scan with the IMU
