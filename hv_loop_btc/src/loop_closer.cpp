@@ -23,7 +23,7 @@ void LoopConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("detector", detector, "search for candidates");
   visitor.Section("registration", registration, "fine alignment of submaps");
   visitor.Section("gate", gate, "what odometry allows");
-  visitor.Section("judge", judge, "which candidates are loops");
+  visitor.Section("vote", vote, "which candidates are loops");
   visitor.Section("odometry", odometry, "edges between consecutive keyframes");
   visitor.Section("graph", graph, "pose graph");
   visitor.Section("store", store, "clouds of keyframes on disk");
@@ -36,7 +36,7 @@ void LoopConfig::Validate(ConfigProblems& problems) const {
   detector.Validate(problems);
   registration.Validate(problems);
   gate.Validate(problems);
-  judge.Validate(problems);
+  vote.Validate(problems);
   odometry.Validate(problems);
   graph.Validate(problems);
   store.Validate(problems);
@@ -49,7 +49,7 @@ LoopCloser::LoopCloser(const LoopConfig& config, KeyframeStore& store)
       detector_(config_.detector, config_.btc, config_.registration, config_.gate,
                 [this](const SubmapRecord& record) { return CloudOf(record); }),
       gate_(config_.gate),
-      judge_(config_.judge),
+      vote_(config_.vote),
       graph_(config_.graph) {}
 
 LoopUpdate LoopCloser::Add(const Keyframe& keyframe) {
@@ -103,7 +103,7 @@ LoopUpdate LoopCloser::Process(const std::optional<Submap>& submap) {
   update.candidates = detector_.Detect(*submap, prior);
   update.detection = detector_.timing();
   const double unheld_m = std::max(0.0, prior.travelled_m - prior.travelled_at_loop_m);
-  const std::vector<LoopCandidate> loops = judge_.Add(
+  const std::vector<LoopCandidate> loops = vote_.Add(
       update.candidates, gate_.LimitsAfter(unheld_m).translation_m, prior.T_map_keyframe);
   for (const LoopCandidate& loop : loops) AddLoop(loop);
   candidates_.insert(candidates_.end(), update.candidates.begin(), update.candidates.end());

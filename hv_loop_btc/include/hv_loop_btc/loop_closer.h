@@ -11,7 +11,7 @@
 #include "hv_core/keyframe.h"
 #include "hv_core/keyframe_store.h"
 #include "hv_loop_btc/loop_detector.h"
-#include "hv_loop_btc/loop_judge.h"
+#include "hv_loop_btc/loop_vote.h"
 #include "hv_loop_btc/odometry_edge.h"
 #include "hv_loop_btc/pose_graph.h"
 
@@ -25,7 +25,7 @@ struct LoopConfig {
   LoopDetectorConfig detector;
   RegistrationConfig registration;
   LoopGateConfig gate;
-  LoopJudgeConfig judge;
+  LoopVoteConfig vote;
   OdometryEdgeConfig odometry;
   PoseGraphConfig graph;
   KeyframeStoreConfig store;
@@ -80,7 +80,7 @@ class LoopCloser {
   SubmapBuilder submaps_;
   LoopDetector detector_;
   LoopGate gate_;
-  LoopJudge judge_;
+  LoopVote vote_;
   PoseGraph graph_;
   std::vector<LoopCandidate> candidates_;
   /// Of each keyframe: where odometry saw it, and the way until then.

@@ -42,7 +42,7 @@ struct LoopPrior {
 
 /// Finds stored submaps that show the place of a new one: descriptors propose, planes pick, fine
 /// alignment measures (methods section 2, steps 5-7). Which of the candidates are loops is for
-/// LoopJudge to say. Not thread-safe.
+/// LoopVote to say. Not thread-safe.
 class LoopDetector {
  public:
   /// Gives back the cloud of a stored submap, in its frame.

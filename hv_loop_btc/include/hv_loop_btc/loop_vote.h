@@ -10,7 +10,7 @@
 
 namespace hv::loop {
 
-struct LoopJudgeConfig {
+struct LoopVoteConfig {
   double sure_within_m = 2.5;
   int window = 12;
   int confirmations = 4;
@@ -28,12 +28,12 @@ struct LoopJudgeConfig {
 /// each other, and the movement that is best supported, by a margin over every other, wins.
 /// Where odometry is certain enough to leave one place only, that place is taken at once.
 /// Not thread-safe.
-class LoopJudge {
+class LoopVote {
  public:
   /// Pose in the map of a keyframe, as believed now.
   using Poses = std::function<Pose(std::uint32_t)>;
 
-  explicit LoopJudge(const LoopJudgeConfig& config) : config_(config) {}
+  explicit LoopVote(const LoopVoteConfig& config) : config_(config) {}
 
   /// Takes the aligned candidates of one submap, and how far odometry may be off there [m]. Returns
   /// those that are loops, also of earlier submaps; each is returned once.
@@ -57,7 +57,7 @@ class LoopJudge {
   bool UniqueNow(const Ballot& ballot, const Poses& poses) const;
   std::vector<LoopCandidate> Count(const Poses& poses);
 
-  LoopJudgeConfig config_;
+  LoopVoteConfig config_;
   std::deque<Ballot> ballots_;  ///< newest last
 };
 

@@ -1,4 +1,4 @@
-#include "hv_loop_btc/loop_judge.h"
+#include "hv_loop_btc/loop_vote.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,13 @@ constexpr double kDriftShare = 0.02;
 constexpr double kDriftRadPerM = 0.3 * kRadians;
 
 /// Where the candidate says that its newer submap is.
-Pose Place(const LoopCandidate& candidate, const LoopJudge::Poses& poses) {
+Pose Place(const LoopCandidate& candidate, const LoopVote::Poses& poses) {
   return poses(candidate.match) * candidate.T_match_query;
 }
 
 }  // namespace
 
-void LoopJudgeConfig::Describe(ConfigVisitor& visitor) {
+void LoopVoteConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("sure_within_m", sure_within_m,
                 "error of odometry up to which a single place is taken at once [m]");
   visitor.Field("window", window, "newest submaps that support each other");
@@ -29,18 +29,18 @@ void LoopJudgeConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("agree_deg", agree_deg, "the same for rotation [deg]");
 }
 
-void LoopJudgeConfig::Validate(ConfigProblems& problems) const {
-  problems.Require(sure_within_m >= 0.0, "judge.sure_within_m", "must not be negative");
-  problems.Require(window >= 1, "judge.window", "must be at least 1");
-  problems.Require(confirmations >= 1 && confirmations <= window, "judge.confirmations",
-                   "must be at least 1 and at most judge.window");
-  problems.Require(margin >= 0.0 && margin < 1.0, "judge.margin",
+void LoopVoteConfig::Validate(ConfigProblems& problems) const {
+  problems.Require(sure_within_m >= 0.0, "vote.sure_within_m", "must not be negative");
+  problems.Require(window >= 1, "vote.window", "must be at least 1");
+  problems.Require(confirmations >= 1 && confirmations <= window, "vote.confirmations",
+                   "must be at least 1 and at most vote.window");
+  problems.Require(margin >= 0.0 && margin < 1.0, "vote.margin",
                    "must be at least 0 and below 1");
-  problems.Require(agree_m > 0.0, "judge.agree_m", "must be positive");
-  problems.Require(agree_deg > 0.0, "judge.agree_deg", "must be positive");
+  problems.Require(agree_m > 0.0, "vote.agree_m", "must be positive");
+  problems.Require(agree_deg > 0.0, "vote.agree_deg", "must be positive");
 }
 
-bool LoopJudge::Agree(const LoopCandidate& a, const LoopCandidate& b, const Poses& poses) const {
+bool LoopVote::Agree(const LoopCandidate& a, const LoopCandidate& b, const Poses& poses) const {
   const Pose T_a_b_odometry = poses(a.query).inverse() * poses(b.query);
   const Pose T_a_b = Place(a, poses).inverse() * Place(b, poses);
   const double apart = T_a_b_odometry.translation().norm();
@@ -50,7 +50,7 @@ bool LoopJudge::Agree(const LoopCandidate& a, const LoopCandidate& b, const Pose
              config_.agree_deg * kRadians + kDriftRadPerM * apart;
 }
 
-LoopJudge::Support LoopJudge::SupportOf(const LoopCandidate& candidate, const Poses& poses) const {
+LoopVote::Support LoopVote::SupportOf(const LoopCandidate& candidate, const Poses& poses) const {
   Support support;
   for (std::size_t i = 0; i < ballots_.size(); ++i) {
     double best = 0.0;
@@ -65,7 +65,7 @@ LoopJudge::Support LoopJudge::SupportOf(const LoopCandidate& candidate, const Po
   return support;
 }
 
-bool LoopJudge::UniqueNow(const Ballot& ballot, const Poses& poses) const {
+bool LoopVote::UniqueNow(const Ballot& ballot, const Poses& poses) const {
   const auto& all = ballot.candidates;
   return std::all_of(all.begin(), all.end(), [&](const LoopCandidate& candidate) {
     return Agree(all.front(), candidate, poses) ||
@@ -73,7 +73,7 @@ bool LoopJudge::UniqueNow(const Ballot& ballot, const Poses& poses) const {
   });
 }
 
-std::vector<LoopCandidate> LoopJudge::Count(const Poses& poses) {
+std::vector<LoopCandidate> LoopVote::Count(const Poses& poses) {
   Support best;
   const LoopCandidate* winner = nullptr;
   for (const LoopCandidate& candidate : ballots_.back().candidates) {
@@ -100,7 +100,7 @@ std::vector<LoopCandidate> LoopJudge::Count(const Poses& poses) {
   return loops;
 }
 
-std::vector<LoopCandidate> LoopJudge::Add(const std::vector<LoopCandidate>& candidates,
+std::vector<LoopCandidate> LoopVote::Add(const std::vector<LoopCandidate>& candidates,
                                           double uncertainty_m, const Poses& poses) {
   Ballot ballot;
   for (const LoopCandidate& candidate : candidates) {
