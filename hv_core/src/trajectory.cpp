@@ -29,6 +29,23 @@ std::optional<StampedPose> ParseTumLine(std::string line) {
   return StampedPose{*stamp, MakePose(rotation, position)};
 }
 
+Trajectory ReadTumLines(std::istream& file, const std::string& path) {
+  std::vector<StampedPose> poses;
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#') continue;
+    const std::optional<StampedPose> pose = ParseTumLine(line);
+    if (!pose) {
+      throw InputError(path + ":" + std::to_string(number) +
+                       ": expected 'stamp x y z qx qy qz qw' with a unit quaternion");
+    }
+    poses.push_back(*pose);
+  }
+  if (file.bad()) throw InputError(path + ": cannot be read");
+  return Trajectory(std::move(poses));
+}
+
 }  // namespace
 
 Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)) {
@@ -76,20 +93,12 @@ double Trajectory::PathLength() const {
 Trajectory ReadTum(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw InputError(path + ": cannot be opened");
-  std::vector<StampedPose> poses;
-  std::string line;
-  for (int number = 1; std::getline(file, line); ++number) {
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos || line[first] == '#') continue;
-    const std::optional<StampedPose> pose = ParseTumLine(line);
-    if (!pose) {
-      throw InputError(path + ":" + std::to_string(number) +
-                       ": expected 'stamp x y z qx qy qz qw' with a unit quaternion");
-    }
-    poses.push_back(*pose);
-  }
-  if (file.bad()) throw InputError(path + ": cannot be read");
-  return Trajectory(std::move(poses));
+  return ReadTumLines(file, path);
+}
+
+Trajectory ParseTum(const std::string& text, const std::string& source) {
+  std::istringstream stream(text);
+  return ReadTumLines(stream, source);
 }
 
 void WriteTum(const std::string& path, const Trajectory& trajectory) {

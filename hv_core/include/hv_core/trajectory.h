@@ -45,6 +45,9 @@ class Trajectory {
 /// Unsorted stamps are sorted. Throws InputError naming file and line.
 Trajectory ReadTum(const std::string& path);
 
+/// The same from text in memory; `source` names it in messages.
+Trajectory ParseTum(const std::string& text, const std::string& source);
+
 /// Writes a TUM file with nine-digit stamps through a temporary file and a rename. Throws
 /// InputError when the file cannot be written.
 void WriteTum(const std::string& path, const Trajectory& trajectory);

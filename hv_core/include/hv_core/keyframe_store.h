@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hv_core/config.h"
+#include "hv_core/keyframe.h"
+#include "hv_core/point_cloud_file.h"
+
+namespace hv {
+
+struct KeyframeStoreConfig {
+  double leaf_m = 0.1;
+  bool keep = false;
+
+  void Describe(ConfigVisitor& visitor);
+  void Validate(ConfigProblems& problems) const;
+};
+
+/// Keeps the clouds of keyframes on disk, one thinned PCD each, so that memory does not grow with
+/// them: only ids are held. Written files are never changed, so MapWriter can link them into a map.
+/// All methods are thread-safe and throw InputError when the disk fails.
+class KeyframeStore {
+ public:
+  /// Creates `folder`; keyframe files that an earlier run left there are removed. `lidar_in_imu` is
+  /// the position of the LiDAR in the IMU frame [m], saved as the viewpoint of each cloud.
+  KeyframeStore(const std::string& folder, const KeyframeStoreConfig& config,
+                const Eigen::Vector3d& lidar_in_imu);
+  /// Removes the files, and the folder if nothing else is in it, unless they are to be kept.
+  ~KeyframeStore();
+  KeyframeStore(const KeyframeStore&) = delete;
+  KeyframeStore& operator=(const KeyframeStore&) = delete;
+
+  /// Thins and writes the points of `keyframe`. Throws InputError when its id is already there.
+  void Append(const Keyframe& keyframe);
+
+  /// Points in the IMU frame, with firing intensity. Throws InputError for an unknown id.
+  PointCloud Load(std::uint32_t id) const;
+
+  bool Contains(std::uint32_t id) const;
+  std::vector<std::uint32_t> Ids() const;  ///< ascending
+  std::string PathOf(std::uint32_t id) const;
+
+ private:
+  void RemoveLeftovers() const;
+
+  const std::string folder_;
+  const KeyframeStoreConfig config_;
+  const Eigen::Vector3f lidar_in_imu_;
+  mutable std::mutex mutex_;
+  std::set<std::uint32_t> ids_;  ///< guarded by mutex_
+};
+
+}  // namespace hv
