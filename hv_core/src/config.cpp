@@ -119,6 +119,8 @@ class Reader : public ConfigVisitor {
     Fill(name, value);
   }
 
+  void Foreign(const char* name) override { known_.emplace_back(name); }
+
   /// To be called after the last field.
   void ReportUnknownKeys() {
     if (!is_map_) return;

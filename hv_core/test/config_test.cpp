@@ -174,5 +174,22 @@ TEST(Config, DecoderDefaultsAreValid) {
   EXPECT_TRUE(problems.lines().empty());
 }
 
+struct WithForeign {
+  int own = 1;
+  void Describe(ConfigVisitor& visitor) {
+    visitor.Field("own", own, "");
+    visitor.Foreign("other");
+  }
+  void Validate(ConfigProblems&) const {}
+};
+
+TEST(ConfigTest, SectionsOfOtherProgramsAreLeftAlone) {
+  WithForeign config;
+  ReadConfig(ParseYaml("own: 2\nother: {anything: [1, 2]}", "test"), "test", config);
+  EXPECT_EQ(config.own, 2);
+  EXPECT_EQ(ToYaml(config).find("other"), std::string::npos);
+  EXPECT_THROW(ReadConfig(ParseYaml("othr: {}", "test"), "test", config), InputError);
+}
+
 }  // namespace
 }  // namespace hv

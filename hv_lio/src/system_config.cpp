@@ -49,6 +49,8 @@ void SystemConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("points", points, "decoding of point clouds");
   visitor.Section("odometry", odometry, "LiDAR-inertial odometry");
   visitor.Section("output", output, "what the node publishes");
+  visitor.Foreign("loop");
+  visitor.Foreign("map");
 }
 
 void SystemConfig::Validate(ConfigProblems& problems) const {

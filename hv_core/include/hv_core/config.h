@@ -33,6 +33,9 @@ class ConfigVisitor {
   virtual void Field(const char* name, std::string& value, const char* description) = 0;
   virtual void Field(const char* name, std::vector<double>& value, const char* description) = 0;
 
+  /// A mapping of the same file that belongs to another program: accepted, not looked at.
+  virtual void Foreign(const char* name) { static_cast<void>(name); }
+
   /// A nested struct: its fields live under the mapping `name`.
   template <typename Config>
   void Section(const char* name, Config& config, const char* description) {

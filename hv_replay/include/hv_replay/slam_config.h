@@ -1,0 +1,21 @@
+#pragma once
+
+#include "hv_core/config.h"
+#include "hv_lio/system_config.h"
+#include "hv_loop_btc/loop_closer.h"
+#include "hv_loop_btc/map_builder.h"
+
+namespace hv::replay {
+
+/// The whole configuration file: what the odometry node reads (`input`, `points`, `odometry`,
+/// `output`) and what the loop closing node reads (`loop`, `map`).
+struct SlamConfig {
+  lio::SystemConfig system;
+  loop::LoopConfig loop;
+  loop::MapBuilderConfig map;
+
+  void Describe(ConfigVisitor& visitor);
+  void Validate(ConfigProblems& problems) const;
+};
+
+}  // namespace hv::replay

@@ -1,0 +1,91 @@
+#include "hv_replay/loop_run.h"
+
+#include <cstdio>
+
+#include "hv_core/map_writer.h"
+#include "hv_loop_btc/map_builder.h"
+#include "hv_replay/console.h"
+#include "hv_replay/csv_log.h"
+
+namespace hv::replay {
+namespace {
+
+const char* const kLoopColumns =
+    "query_stamp,match_stamp,query,match,x,y,z,qx,qy,qz,qw,votes,inliers,plane_overlap,fitness,"
+    "overlap,score,accepted,reason";
+
+std::string LoopRow(const loop::LoopCandidate& loop) {
+  const Eigen::Vector3d t = loop.T_match_query.translation();
+  const Eigen::Quaterniond q(loop.T_match_query.linear());
+  char numbers[400];
+  std::snprintf(numbers, sizeof(numbers),
+                ",%u,%u,%.6f,%.6f,%.6f,%.8f,%.8f,%.8f,%.8f,%d,%d,%.4f,%.4f,%.4f,%.4f,%d,",
+                loop.query, loop.match, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w(),
+                loop.votes, loop.inliers, loop.plane_overlap, loop.fitness, loop.overlap,
+                loop.score(), loop.accepted ? 1 : 0);
+  return ToString(loop.query_stamp) + "," + ToString(loop.match_stamp) + numbers + loop.reason;
+}
+
+}  // namespace
+
+LoopRun::LoopRun(const SlamConfig& config, const std::string& out_dir)
+    : config_(config),
+      out_dir_(out_dir),
+      keyframes_(config.system.output.keyframe_distance_m,
+                 config.system.output.keyframe_angle_deg),
+      store_(out_dir + "/keyframes", config.loop.store,
+             config.system.odometry.extrinsic.T_imu_lidar().translation()),
+      closer_(config.loop, store_) {}
+
+void LoopRun::Add(const lio::ScanResult& result) {
+  const std::optional<Keyframe> keyframe = keyframes_.Add(result);
+  if (!keyframe) return;
+  ++summary_.keyframes;
+  Note(closer_.Add(*keyframe));
+}
+
+void LoopRun::Note(const loop::LoopUpdate& update) {
+  if (update.detection.extract_ms > 0.0) {
+    summary_.detect_ms.push_back(update.detection.extract_ms + update.detection.query_ms);
+    summary_.align_ms.push_back(update.detection.align_ms);
+  }
+  if (update.optimized) summary_.optimize_ms.push_back(1000.0 * update.graph.seconds);
+}
+
+LoopRunSummary LoopRun::Finish(const std::vector<StampedPose>& odometry) {
+  Note(closer_.Finish());
+  std::vector<StampedPose> corrected;
+  corrected.reserve(odometry.size());
+  for (const StampedPose& pose : odometry) {
+    corrected.push_back({pose.stamp, closer_.Corrected(pose.stamp, pose.pose)});
+  }
+  WriteTum(out_dir_ + "/trajectory.tum", Trajectory(corrected));
+  WriteLoops();
+  if (summary_.keyframes > 0) WriteMap();
+  summary_.candidates = closer_.candidates().size();
+  for (const loop::LoopCandidate& loop : closer_.candidates()) summary_.loops += loop.accepted;
+  return summary_;
+}
+
+void LoopRun::WriteLoops() const {
+  CsvLog file(out_dir_ + "/loops.csv", kLoopColumns);
+  for (const loop::LoopCandidate& loop : closer_.candidates()) file.Append(LoopRow(loop));
+}
+
+void LoopRun::WriteMap() const {
+  MapWriter writer(out_dir_ + "/map");
+  for (const GraphVertex& vertex : closer_.graph().Poses()) {
+    writer.AddKeyframe(vertex.id, store_.PathOf(vertex.id));
+  }
+  writer.AddGraph(closer_.graph().ToData());
+  ProgressLine progress("map");
+  const loop::BuiltMap built = loop::MapBuilder(config_.map).Build(
+      closer_.graph().Poses(), [this](std::uint32_t id) { return store_.Load(id); },
+      writer.OccupancyPath(), [&progress](double share) { progress.Update(share, ""); });
+  writer.AddCloud(built.cloud);
+  writer.AddGrid(built.grid);
+  writer.AddDescriptors(closer_.detector().Serialize());
+  writer.Commit(ToYaml(config_));
+}
+
+}  // namespace hv::replay

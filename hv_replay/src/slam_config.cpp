@@ -1,0 +1,17 @@
+#include "hv_replay/slam_config.h"
+
+namespace hv::replay {
+
+void SlamConfig::Describe(ConfigVisitor& visitor) {
+  system.Describe(visitor);
+  visitor.Section("loop", loop, "loop closing");
+  visitor.Section("map", map, "what is made of the keyframes when a map is saved");
+}
+
+void SlamConfig::Validate(ConfigProblems& problems) const {
+  system.Validate(problems);
+  loop.Validate(problems);
+  map.Validate(problems);
+}
+
+}  // namespace hv::replay
