@@ -4,9 +4,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include "hv_core/config.h"
-#include "hv_lio/system_config.h"
+#include "hv_replay/slam_config.h"
 
-namespace hv::lio {
+namespace hv::replay {
 namespace {
 
 TEST(ShippedConfiguration, EveryFileIsAccepted) {
@@ -14,7 +14,7 @@ TEST(ShippedConfiguration, EveryFileIsAccepted) {
   for (const auto& entry : std::filesystem::directory_iterator(HV_CONFIG_DIRECTORY)) {
     if (entry.path().extension() != ".yaml") continue;
     ++files;
-    SystemConfig config;
+    SlamConfig config;
     const std::string path = entry.path().string();
     EXPECT_NO_THROW(ReadConfig(LoadYamlFile(path), path, config)) << path;
   }
@@ -22,7 +22,7 @@ TEST(ShippedConfiguration, EveryFileIsAccepted) {
 }
 
 TEST(ShippedConfiguration, FilesHoldOnlyWhatDiffersFromTheDefaults) {
-  const YAML::Node defaults = ParseYaml(ToYaml(SystemConfig{}), "defaults");
+  const YAML::Node defaults = ParseYaml(ToYaml(SlamConfig{}), "defaults");
   const std::function<void(const YAML::Node&, const YAML::Node&, const std::string&)> compare =
       [&compare](const YAML::Node& node, const YAML::Node& standard, const std::string& where) {
         for (const auto& pair : node) {
@@ -42,4 +42,4 @@ TEST(ShippedConfiguration, FilesHoldOnlyWhatDiffersFromTheDefaults) {
 }
 
 }  // namespace
-}  // namespace hv::lio
+}  // namespace hv::replay

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "hv_loop_btc/submap_file.h"
+
 namespace hv::loop {
 namespace {
 
@@ -138,6 +140,14 @@ void LoopCloser::MarkRefused(std::vector<LoopCandidate>& fresh) {
   };
   for (LoopCandidate& candidate : candidates_) mark(candidate);
   for (LoopCandidate& candidate : fresh) mark(candidate);
+}
+
+std::string LoopCloser::SerializedSubmaps() const {
+  StoredSubmaps submaps{detector_.scale_name(), detector_.records(), {}};
+  for (std::size_t i = 0; i < detector_.database().size(); ++i) {
+    submaps.descriptors.push_back(detector_.database().entry(i));
+  }
+  return Serialize(submaps);
 }
 
 Pose LoopCloser::Corrected(Time stamp, const Pose& T_odom_imu) const {

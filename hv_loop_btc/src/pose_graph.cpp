@@ -1,6 +1,7 @@
 #include "hv_loop_btc/pose_graph.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include <Eigen/Eigenvalues>
 
@@ -37,10 +38,6 @@ bool IsSemidefinite(const Matrix6d& matrix) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(matrix, Eigen::EigenvaluesOnly);
   const double largest = solver.eigenvalues().maxCoeff();
   return largest > 0.0 && solver.eigenvalues().minCoeff() >= -kTolerance * largest;
-}
-
-Measurement Indexed(const GraphEdge& edge, const std::map<std::uint32_t, std::size_t>& index) {
-  return {index.at(edge.from), index.at(edge.to), edge.T_from_to, edge.information};
 }
 
 }  // namespace
@@ -91,7 +88,6 @@ void PoseGraph::AddTilt(std::uint32_t id, const Eigen::Vector3d& up_imu) {
   const std::string name = "tilt of keyframe " + std::to_string(id);
   VertexState& state = states_[Index(id, name)];
   Require(up_imu.allFinite() && up_imu.norm() > 0.0, name, "has no direction");
-  state.has_tilt = true;
   state.up_imu = up_imu.normalized();
 }
 
@@ -122,38 +118,46 @@ void PoseGraph::CheckOdometry(const GraphEdge& edge, const std::string& name) co
 }
 
 PoseGraphSummary PoseGraph::Optimize() {
+  const auto start = std::chrono::steady_clock::now();
+  IndexedGraph graph = Indexed();
+  PoseGraphSummary summary = RobustOptimizer(config_, graph).Run();
+  TakeResult(graph);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  summary.seconds = elapsed.count();
+  return summary;
+}
+
+IndexedGraph PoseGraph::Indexed() const {
   IndexedGraph graph;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     graph.poses.push_back(vertices_[i].T_map_imu);
     graph.optimized.push_back(states_[i].optimized);
-    if (states_[i].has_tilt) graph.tilts.push_back({i, states_[i].up_imu});
+    if (states_[i].up_imu) graph.tilts.push_back({i, *states_[i].up_imu});
   }
-  std::vector<std::size_t> loop_edges;
   for (std::size_t k = 0; k < edges_.size(); ++k) {
-    const Measurement measurement = Indexed(edges_[k], index_);
-    if (edges_[k].kind == EdgeKind::kOdometry) {
-      graph.odometry.push_back(measurement);
-      continue;
-    }
-    const LoopState judged = edges_[k].accepted ? LoopState::kAccepted : LoopState::kRefused;
-    graph.loops.push_back(measurement);
+    const GraphEdge& edge = edges_[k];
+    const bool loop = edge.kind == EdgeKind::kLoop;
+    (loop ? graph.loops : graph.odometry)
+        .push_back({index_.at(edge.from), index_.at(edge.to), edge.T_from_to, edge.information});
+    if (!loop) continue;
+    const LoopState judged = edge.accepted ? LoopState::kAccepted : LoopState::kRefused;
     graph.states.push_back(k < first_fresh_edge_ ? judged : LoopState::kFresh);
-    loop_edges.push_back(k);
   }
   std::sort(graph.odometry.begin(), graph.odometry.end(),
             [](const Measurement& a, const Measurement& b) { return a.to < b.to; });
+  return graph;
+}
 
-  const PoseGraphSummary summary = RobustOptimizer(config_, graph).Run();
-
+void PoseGraph::TakeResult(const IndexedGraph& graph) {
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     vertices_[i].T_map_imu = graph.poses[i];
     states_[i].optimized = true;
   }
-  for (std::size_t k = 0; k < loop_edges.size(); ++k) {
-    edges_[loop_edges[k]].accepted = graph.states[k] == LoopState::kAccepted;
+  std::size_t loop = 0;
+  for (GraphEdge& edge : edges_) {
+    if (edge.kind == EdgeKind::kLoop) edge.accepted = graph.states[loop++] == LoopState::kAccepted;
   }
   first_fresh_edge_ = edges_.size();
-  return summary;
 }
 
 const Pose& PoseGraph::pose(std::uint32_t id) const {

@@ -84,7 +84,7 @@ void LoopRun::WriteMap() const {
       writer.OccupancyPath(), [&progress](double share) { progress.Update(share, ""); });
   writer.AddCloud(built.cloud);
   writer.AddGrid(built.grid);
-  writer.AddDescriptors(closer_.detector().Serialize());
+  writer.AddDescriptors(closer_.SerializedSubmaps());
   writer.Commit(ToYaml(config_));
 }
 

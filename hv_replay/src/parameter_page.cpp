@@ -1,7 +1,7 @@
 #include "hv_replay/parameter_page.h"
 
 #include "hv_core/config.h"
-#include "hv_lio/system_config.h"
+#include "hv_replay/slam_config.h"
 
 namespace hv::replay {
 namespace {
@@ -31,6 +31,6 @@ named by `~config_file`. The effective configuration is saved as `config.yaml` b
 
 }  // namespace
 
-std::string ParameterPage() { return kIntroduction + ParameterTable<lio::SystemConfig>(); }
+std::string ParameterPage() { return kIntroduction + ParameterTable<SlamConfig>(); }
 
 }  // namespace hv::replay

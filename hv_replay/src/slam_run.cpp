@@ -73,6 +73,26 @@ std::string CovarianceRow(const lio::ScanResult& result) {
          std::to_string(result.update.degenerate_rotation.size());
 }
 
+JsonObject TimesJson(const std::vector<double>& milliseconds) {
+  JsonObject times;
+  times.Add("mean", Mean(milliseconds))
+      .Add("median", Quantile(milliseconds, 0.5))
+      .Add("p99", Quantile(milliseconds, 0.99))
+      .Add("max", Quantile(milliseconds, 1.0));
+  return times;
+}
+
+JsonObject LoopsJson(const LoopRunSummary& summary) {
+  JsonObject json;
+  json.AddCount("keyframes", summary.keyframes)
+      .AddCount("candidates", summary.candidates)
+      .AddCount("accepted", summary.loops)
+      .Add("detect_ms", TimesJson(summary.detect_ms))
+      .Add("align_ms", TimesJson(summary.align_ms))
+      .Add("optimize_ms", TimesJson(summary.optimize_ms));
+  return json;
+}
+
 }  // namespace
 
 double ResidentMemoryMb() {
@@ -86,31 +106,22 @@ double ResidentMemoryMb() {
   return read == 2 ? page_mb * static_cast<double>(resident_pages) : 0.0;
 }
 
-CsvLog::CsvLog(const std::string& path, const std::string& header)
-    : file_(std::fopen(path.c_str(), "w")) {
-  if (file_ == nullptr) throw InputError(path + ": cannot be written");
-  Append(header);
-}
-
-CsvLog::~CsvLog() { std::fclose(file_); }
-
-void CsvLog::Append(const std::string& row) {
-  std::fprintf(file_, "%s\n", row.c_str());
-  std::fflush(file_);
-}
-
-SlamRun::SlamRun(const lio::SystemConfig& config, const std::vector<std::string>& bags,
-                 const std::string& out_dir, bool pictures)
+SlamRun::SlamRun(const SlamConfig& config, const std::vector<std::string>& bags,
+                 const std::string& out_dir, const SlamRunOptions& options)
     : config_(config),
       out_dir_(CreateDirectory(out_dir)),
-      pictures_(pictures),
-      reader_(bags, {config.input.points_topic, config.input.imu_topic}, NeedOf(config)),
-      decoder_(config.points),
-      pipeline_(config.odometry),
+      options_(options),
+      reader_(bags, {config.system.input.points_topic, config.system.input.imu_topic},
+              NeedOf(config.system)),
+      decoder_(config.system.points),
+      pipeline_(config.system.odometry),
       timing_(out_dir + "/timing.csv", "stamp,preprocess_ms,update_ms,map_ms,total_ms,voxels,rss_mb"),
       covariance_(out_dir + "/covariance.csv",
                   "stamp,xx,xy,xz,yy,yz,zz,rxrx,rxry,rxrz,ryry,ryrz,rzrz,"
-                  "degenerate_translation,degenerate_rotation") {}
+                  "degenerate_translation,degenerate_rotation") {
+  if (options.loops) loops_.emplace(config, out_dir);
+  if (options.drift) drift_.emplace(*options.drift);
+}
 
 SlamRunSummary SlamRun::Run() {
   WriteText(out_dir_ + "/config.yaml", ToYaml(config_));
@@ -155,21 +166,23 @@ void SlamRun::AddImu(const BagImu& imu) {
 }
 
 void SlamRun::Drain(bool flush) {
-  while (const auto result = flush ? pipeline_.Flush() : pipeline_.ProcessNext()) Take(*result);
+  while (auto result = flush ? pipeline_.Flush() : pipeline_.ProcessNext()) Take(std::move(*result));
   for (const std::string& event : pipeline_.TakeEvents()) Warn(event);
 }
 
-void SlamRun::Take(const lio::ScanResult& result) {
+void SlamRun::Take(lio::ScanResult result) {
   ++summary_.scans_by_status[lio::ToString(result.status)];
   const bool tracking = result.status == lio::ScanStatus::kTracking;
   if (!tracking && result.status != lio::ScanStatus::kImuOnly) return;
+  if (drift_) result.estimate.T_odom_imu = drift_->Apply(result.estimate.T_odom_imu);
   timing_.Append(TimingRow(result));
   covariance_.Append(CovarianceRow(result));
   poses_.push_back({result.estimate.stamp, result.estimate.T_odom_imu});
   if (!tracking) return;
+  if (loops_) loops_->Add(result);
   summary_.total_ms.push_back(result.timing.total_ms());
   summary_.degenerate_scans += result.update.degenerate() ? 1U : 0U;
-  if (pictures_) AddToPicture(result);
+  if (options_.pictures) AddToPicture(result);
 }
 
 void SlamRun::AddToPicture(const lio::ScanResult& result) {
@@ -182,8 +195,9 @@ void SlamRun::AddToPicture(const lio::ScanResult& result) {
 
 void SlamRun::WriteResults(const Trajectory& odometry) {
   WriteTum(out_dir_ + "/odometry.tum", odometry);
+  if (loops_) summary_.loops = loops_->Finish(poses_);
   WriteText(out_dir_ + "/summary.json", SummaryJson(summary_).ToString() + "\n");
-  if (!pictures_ || odometry.size() < 2 || picture_.cells() == 0) return;
+  if (!options_.pictures || odometry.size() < 2 || picture_.cells() == 0) return;
   PlotTrajectories({{"odometry", odometry, false}}, "HV-LIO odometry",
                    out_dir_ + "/trajectory.png");
   picture_.Save(odometry, "HV-LIO map", out_dir_ + "/map.png");
@@ -192,11 +206,6 @@ void SlamRun::WriteResults(const Trajectory& odometry) {
 JsonObject SummaryJson(const SlamRunSummary& summary) {
   JsonObject statuses;
   for (const auto& [status, count] : summary.scans_by_status) statuses.AddCount(status, count);
-  JsonObject timing;
-  timing.Add("mean", Mean(summary.total_ms))
-      .Add("median", Quantile(summary.total_ms, 0.5))
-      .Add("p99", Quantile(summary.total_ms, 0.99))
-      .Add("max", Quantile(summary.total_ms, 1.0));
   const lio::PipelineCounters& counters = summary.counters;
   JsonObject input;
   input.AddCount("scans", counters.scans)
@@ -209,10 +218,11 @@ JsonObject SummaryJson(const SlamRunSummary& summary) {
       .AddCount("clock_jumps", counters.clock_jumps)
       .AddCount("resets", counters.resets);
   JsonObject json;
+  if (summary.loops) json.Add("loops", LoopsJson(*summary.loops));
   json.Add("scans", statuses)
       .Add("path_length_m", summary.path_length_m)
       .AddCount("degenerate_scans", summary.degenerate_scans)
-      .Add("scan_ms", timing)
+      .Add("scan_ms", TimesJson(summary.total_ms))
       .Add("input", input)
       .Add("point_time", summary.time_layout)
       .Add("resident_mb", ResidentMemoryMb())

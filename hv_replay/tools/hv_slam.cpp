@@ -7,7 +7,6 @@
 
 #include "hv_core/config.h"
 #include "hv_core/error.h"
-#include "hv_lio/system_config.h"
 #include "hv_replay/slam_run.h"
 #include "tool.h"
 
@@ -20,6 +19,7 @@ struct Arguments {
   int threads = 0;
   bool no_loop = false;
   bool no_pictures = false;
+  std::vector<double> drift;
   bool json = false;
 };
 
@@ -35,6 +35,9 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_flag("--no-loop", arguments.no_loop, "odometry only");
   app.add_flag("--no-pictures", arguments.no_pictures,
                "skip map.png and trajectory.png, whose memory grows with the area");
+  app.add_option("--inject-drift", arguments.drift,
+                 "make the odometry worse: share of the distance, and degrees of heading a metre")
+      ->expected(2);
   app.add_flag("--json", arguments.json, "print the summary as one JSON object");
 }
 
@@ -45,14 +48,26 @@ void PrintSummary(const hv::replay::SlamRunSummary& summary, const std::string& 
   }
   std::printf("path length          %.2f m\n", summary.path_length_m);
   std::printf("degenerate scans     %zu\n", summary.degenerate_scans);
+  if (summary.loops) {
+    std::printf("loops                %zu of %zu candidates, %zu keyframes\n", summary.loops->loops,
+                summary.loops->candidates, summary.loops->keyframes);
+  }
   std::printf("results in           %s\n", out.c_str());
 }
 
+hv::replay::SlamRunOptions OptionsOf(const Arguments& arguments) {
+  hv::replay::SlamRunOptions options;
+  options.loops = !arguments.no_loop;
+  options.pictures = !arguments.no_pictures;
+  if (!arguments.drift.empty()) options.drift = {arguments.drift[0], arguments.drift[1]};
+  return options;
+}
+
 int Run(const Arguments& arguments) {
-  hv::lio::SystemConfig config;
+  hv::replay::SlamConfig config;
   hv::ReadConfig(hv::LoadYamlFile(arguments.config), arguments.config, config);
-  if (arguments.threads > 0) config.odometry.threads = arguments.threads;
-  hv::replay::SlamRun run(config, arguments.bags, arguments.out, !arguments.no_pictures);
+  if (arguments.threads > 0) config.system.odometry.threads = arguments.threads;
+  hv::replay::SlamRun run(config, arguments.bags, arguments.out, OptionsOf(arguments));
   const hv::replay::SlamRunSummary summary = run.Run();
   if (arguments.json) {
     std::printf("%s\n", hv::replay::SummaryJson(summary).ToString().c_str());
@@ -67,7 +82,7 @@ int Run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("LiDAR-inertial odometry over bags, without a ROS master.", "hv_slam");
+  CLI::App app("LiDAR-inertial odometry and loop closing over bags, without a ROS master.", "hv_slam");
   Arguments arguments;
   Declare(app, arguments);
   return hv::replay::RunTool(app, argc, argv, [&arguments] { return Run(arguments); });

@@ -64,6 +64,9 @@ class LoopCloser {
   const PoseGraph& graph() const { return graph_; }
   const LoopDetector& detector() const { return detector_; }
 
+  /// The submaps as bytes, to be stored with the map.
+  std::string SerializedSubmaps() const;
+
   /// Corrected pose between keyframes: the nearest keyframe in time carries the odometry pose.
   Pose Corrected(Time stamp, const Pose& T_odom_imu) const;
 

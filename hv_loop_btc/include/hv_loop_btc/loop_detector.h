@@ -67,6 +67,8 @@ class LoopDetector {
   const Timing& timing() const { return timing_; }
   const BtcDatabase& database() const { return database_; }
   const std::vector<SubmapRecord>& records() const { return records_; }
+  /// indoor, outdoor, or auto before the first submap.
+  const std::string& scale_name() const { return extractor_.scale_name(); }
 
  private:
   std::vector<LoopCandidate> Propose(const BtcDescriptor& descriptor, const Submap& submap,

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@
 #include "hv_core/pose_graph_data.h"
 
 namespace hv::loop {
+
+struct IndexedGraph;
 
 struct PoseGraphConfig {
   int max_iterations = 30;
@@ -95,12 +98,13 @@ class PoseGraph {
     bool optimized = false;
     bool has_edge_to = false;
     bool has_edge_from = false;
-    bool has_tilt = false;
-    Eigen::Vector3d up_imu = Eigen::Vector3d::UnitZ();
+    std::optional<Eigen::Vector3d> up_imu;  ///< unit vector
   };
 
   std::size_t Index(std::uint32_t id, const std::string& context) const;
   void CheckOdometry(const GraphEdge& edge, const std::string& name) const;
+  IndexedGraph Indexed() const;
+  void TakeResult(const IndexedGraph& graph);
 
   PoseGraphConfig config_;
   std::vector<GraphVertex> vertices_;
