@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hv_core/config.h"
+#include "hv_core/keyframe.h"
+#include "hv_core/keyframe_store.h"
+#include "hv_loop_btc/loop_detector.h"
+#include "hv_loop_btc/loop_vote.h"
+#include "hv_loop_btc/odometry_edge.h"
+#include "hv_loop_btc/pose_graph.h"
+
+namespace hv::loop {
+
+/// Everything that loop closing can be told. Section `loop` of the configuration file.
+struct LoopConfig {
+  double information_scale = 400.0;
+  SubmapConfig submap;
+  BtcConfig btc;
+  LoopDetectorConfig detector;
+  RegistrationConfig registration;
+  LoopGateConfig gate;
+  LoopVoteConfig vote;
+  OdometryEdgeConfig odometry;
+  PoseGraphConfig graph;
+  KeyframeStoreConfig store;
+
+  void Describe(ConfigVisitor& visitor);
+  void Validate(ConfigProblems& problems) const;
+};
+
+/// What one keyframe led to.
+struct LoopUpdate {
+  std::vector<LoopCandidate> candidates;  ///< all that were looked at; accepted or with a reason
+  bool optimized = false;                 ///< the poses of earlier keyframes have moved
+  PoseGraphSummary graph;                 ///< of the last optimisation
+  LoopDetector::Timing detection;
+};
+
+/// From keyframes of the odometry to a consistent map: submaps, loop candidates, pose graph (paper
+/// 3.2). The offline tool and the node both drive this class. Clouds go to the store; what is kept
+/// of a keyframe in memory is its pose, its edges and its share of a descriptor. Not thread-safe.
+class LoopCloser {
+ public:
+  /// Throws InputError when the configuration is invalid. `store` must outlive this object.
+  LoopCloser(const LoopConfig& config, KeyframeStore& store);
+
+  /// Keyframes in order of time, ids growing.
+  LoopUpdate Add(const Keyframe& keyframe);
+
+  /// Takes the keyframes that are not yet in a submap, at the end of the data.
+  LoopUpdate Finish();
+
+  /// Pose of odom in map: carries odometry of the newest segment to the corrected map.
+  Pose T_map_odom() const { return T_map_odom_; }
+
+  /// Every loop candidate since the start.
+  const std::vector<LoopCandidate>& candidates() const { return candidates_; }
+  const PoseGraph& graph() const { return graph_; }
+  const LoopDetector& detector() const { return detector_; }
+
+  /// Corrected pose between keyframes: the nearest keyframe in time carries the odometry pose.
+  Pose Corrected(Time stamp, const Pose& T_odom_imu) const;
+
+ private:
+  void AddToGraph(const Keyframe& keyframe);
+  LoopUpdate Process(const std::optional<Submap>& submap);
+  LoopPrior Prior(const Submap& submap) const;
+  std::vector<Eigen::Vector3f> CloudOf(const SubmapRecord& record) const;
+  void AddLoop(const LoopCandidate& loop);
+  void MarkRefused(std::vector<LoopCandidate>& fresh);
+
+  LoopConfig config_;
+  KeyframeStore& store_;
+  SubmapBuilder submaps_;
+  LoopDetector detector_;
+  LoopGate gate_;
+  LoopVote vote_;
+  PoseGraph graph_;
+  std::vector<LoopCandidate> candidates_;
+  /// Of each keyframe: where odometry saw it, and the way until then.
+  struct Track {
+    Time stamp;
+    Pose T_odom_imu = Pose::Identity();
+    double travelled_m = 0.0;
+  };
+  std::map<std::uint32_t, Track> tracks_;
+  std::optional<Keyframe> last_;  ///< without points
+  double travelled_at_loop_m_ = 0.0;
+  Pose T_map_odom_ = Pose::Identity();
+};
+
+}  // namespace hv::loop

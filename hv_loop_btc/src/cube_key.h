@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include <Eigen/Core>
+
+namespace hv::loop {
+
+/// Cell of a cubic grid.
+struct Cube {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+  std::int32_t z = 0;
+};
+
+/// 21 bits an axis: cubes within +-2^20 of the origin have keys of their own.
+inline std::uint64_t CubeKey(const Cube& cube) {
+  constexpr std::int32_t kOffset = 1 << 20;
+  const auto part = [](std::int32_t cell) {
+    return static_cast<std::uint64_t>(cell + kOffset) & 0x1FFFFFU;
+  };
+  return (part(cube.x) << 42U) | (part(cube.y) << 21U) | part(cube.z);
+}
+
+inline Cube CubeOf(const Eigen::Vector3f& point, float inverse_size) {
+  return {static_cast<std::int32_t>(std::floor(point.x() * inverse_size)),
+          static_cast<std::int32_t>(std::floor(point.y() * inverse_size)),
+          static_cast<std::int32_t>(std::floor(point.z() * inverse_size))};
+}
+
+inline std::uint64_t CubeKey(const Eigen::Vector3f& point, float inverse_size) {
+  return CubeKey(CubeOf(point, inverse_size));
+}
+
+}  // namespace hv::loop

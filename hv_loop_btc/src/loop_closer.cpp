@@ -1,0 +1,164 @@
+#include "hv_loop_btc/loop_closer.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace hv::loop {
+namespace {
+
+LoopConfig Checked(const LoopConfig& config) {
+  ConfigProblems problems;
+  config.Validate(problems);
+  if (!problems.lines().empty()) throw InputError("configuration: " + problems.lines().front());
+  return config;
+}
+
+}  // namespace
+
+void LoopConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Field("information_scale", information_scale,
+                "weight of a perfect loop (lambda of Eq. 10) [1/m^2, 1/rad^2]");
+  visitor.Section("submap", submap, "consecutive keyframes as one cloud");
+  visitor.Section("btc", btc, "boundary triangle descriptors");
+  visitor.Section("detector", detector, "search for candidates");
+  visitor.Section("registration", registration, "fine alignment of submaps");
+  visitor.Section("gate", gate, "what odometry allows");
+  visitor.Section("vote", vote, "which candidates are loops");
+  visitor.Section("odometry", odometry, "edges between consecutive keyframes");
+  visitor.Section("graph", graph, "pose graph");
+  visitor.Section("store", store, "clouds of keyframes on disk");
+}
+
+void LoopConfig::Validate(ConfigProblems& problems) const {
+  problems.Require(information_scale > 0.0, "loop.information_scale", "must be positive");
+  submap.Validate(problems);
+  btc.Validate(problems);
+  detector.Validate(problems);
+  registration.Validate(problems);
+  gate.Validate(problems);
+  vote.Validate(problems);
+  odometry.Validate(problems);
+  graph.Validate(problems);
+  store.Validate(problems);
+}
+
+LoopCloser::LoopCloser(const LoopConfig& config, KeyframeStore& store)
+    : config_(Checked(config)),
+      store_(store),
+      submaps_(config_.submap),
+      detector_(config_.detector, config_.btc, config_.registration, config_.gate,
+                [this](const SubmapRecord& record) { return CloudOf(record); }),
+      gate_(config_.gate),
+      vote_(config_.vote),
+      graph_(config_.graph) {}
+
+LoopUpdate LoopCloser::Add(const Keyframe& keyframe) {
+  store_.Append(keyframe);
+  AddToGraph(keyframe);
+  return Process(submaps_.Add(keyframe));
+}
+
+LoopUpdate LoopCloser::Finish() { return Process(submaps_.Finish()); }
+
+void LoopCloser::AddToGraph(const Keyframe& keyframe) {
+  graph_.AddVertex(keyframe.id, keyframe.stamp, T_map_odom_ * keyframe.T_odom_imu);
+  graph_.AddTilt(keyframe.id, UpInImu(keyframe));
+  Track track{keyframe.stamp, keyframe.T_odom_imu, 0.0};
+  if (last_) {
+    const Pose step = last_->T_odom_imu.inverse() * keyframe.T_odom_imu;
+    track.travelled_m = tracks_.at(last_->id).travelled_m + step.translation().norm();
+    if (last_->segment == keyframe.segment) {
+      graph_.AddEdge(OdometryEdge(config_.odometry, *last_, keyframe));
+    }
+  }
+  tracks_[keyframe.id] = track;
+  last_ = keyframe;
+  last_->points = {};
+}
+
+LoopPrior LoopCloser::Prior(const Submap& submap) const {
+  LoopPrior prior;
+  prior.T_map_keyframe = [this](std::uint32_t id) { return graph_.pose(id); };
+  prior.T_map_query = graph_.pose(submap.keyframe);
+  prior.travelled_m = tracks_.at(submap.keyframe).travelled_m;
+  prior.travelled_at_loop_m = travelled_at_loop_m_;
+  return prior;
+}
+
+std::vector<Eigen::Vector3f> LoopCloser::CloudOf(const SubmapRecord& record) const {
+  std::vector<Eigen::Vector3f> all;
+  for (const SubmapMember& member : record.members) {
+    const Eigen::Isometry3f transform = member.T_submap_keyframe.cast<float>();
+    for (const Point& point : store_.Load(member.keyframe).points) {
+      all.push_back(transform * Eigen::Vector3f(point.x, point.y, point.z));
+    }
+  }
+  return Thinned(all, config_.submap.leaf_m);
+}
+
+LoopUpdate LoopCloser::Process(const std::optional<Submap>& submap) {
+  LoopUpdate update;
+  if (!submap) return update;
+  const LoopPrior prior = Prior(*submap);
+  update.candidates = detector_.Detect(*submap, prior);
+  update.detection = detector_.timing();
+  const double unheld_m = std::max(0.0, prior.travelled_m - prior.travelled_at_loop_m);
+  const std::vector<LoopCandidate> loops = vote_.Add(
+      update.candidates, gate_.LimitsAfter(unheld_m).translation_m, prior.T_map_keyframe);
+  for (const LoopCandidate& loop : loops) AddLoop(loop);
+  candidates_.insert(candidates_.end(), update.candidates.begin(), update.candidates.end());
+  if (loops.empty()) return update;
+  update.graph = graph_.Optimize();
+  update.optimized = true;
+  T_map_odom_ = graph_.pose(last_->id) * last_->T_odom_imu.inverse();
+  MarkRefused(update.candidates);
+  return update;
+}
+
+void LoopCloser::AddLoop(const LoopCandidate& loop) {
+  GraphEdge edge;
+  edge.kind = EdgeKind::kLoop;
+  edge.from = loop.match;
+  edge.to = loop.query;
+  edge.T_from_to = loop.T_match_query;
+  edge.information = config_.information_scale * loop.score() * Matrix6d::Identity();
+  graph_.AddEdge(edge);
+  travelled_at_loop_m_ = std::max(travelled_at_loop_m_, tracks_.at(loop.query).travelled_m);
+}
+
+void LoopCloser::MarkRefused(std::vector<LoopCandidate>& fresh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> judged;
+  for (const GraphEdge& edge : graph_.edges()) {
+    if (edge.kind == EdgeKind::kLoop) judged[{edge.from, edge.to}] = edge.accepted;
+  }
+  const auto mark = [&](LoopCandidate& candidate) {
+    const auto found = judged.find({candidate.match, candidate.query});
+    if (found == judged.end() || !candidate.reason.empty()) return;
+    candidate.accepted = found->second;
+  };
+  for (LoopCandidate& candidate : candidates_) mark(candidate);
+  for (LoopCandidate& candidate : fresh) mark(candidate);
+}
+
+Pose LoopCloser::Corrected(Time stamp, const Pose& T_odom_imu) const {
+  const std::vector<GraphVertex>& vertices = graph_.Poses();
+  if (vertices.empty()) return T_odom_imu;
+  auto after = std::lower_bound(
+      vertices.begin(), vertices.end(), stamp,
+      [](const GraphVertex& vertex, Time time) { return vertex.stamp < time; });
+  if (after == vertices.end()) --after;
+  const auto before = after == vertices.begin() ? after : after - 1;
+  const auto carried = [&](const GraphVertex& vertex) -> Pose {
+    return vertex.T_map_imu * tracks_.at(vertex.id).T_odom_imu.inverse() * T_odom_imu;
+  };
+  const double span = after->stamp - before->stamp;
+  const double ratio = span > 0.0 ? std::clamp((stamp - before->stamp) / span, 0.0, 1.0) : 0.0;
+  const Pose earlier = carried(*before);
+  const Pose later = carried(*after);
+  const Eigen::Quaterniond rotation = Eigen::Quaterniond(earlier.linear())
+                                          .slerp(ratio, Eigen::Quaterniond(later.linear()));
+  return MakePose(rotation, Eigen::Vector3d((1.0 - ratio) * earlier.translation() +
+                                            ratio * later.translation()));
+}
+
+}  // namespace hv::loop
