@@ -190,7 +190,9 @@ void MapWriter::AddCloud(const std::vector<Point>& points) {
   manifest_.cloud_points = points.size();
 }
 
-void MapWriter::AddGrid(const OccupancyGrid& grid) { WriteGrid(stage_, "grid", grid); }
+void MapWriter::AddGrid(const OccupancyGrid& grid) {
+  if (!grid.cells.empty()) WriteGrid(stage_, "grid", grid);
+}
 
 void MapWriter::Commit(const std::string& configuration, const std::string& frame) {
   manifest_.configuration = configuration;

@@ -36,6 +36,7 @@ class MapWriter {
   void AddDescriptors(std::string_view bytes);
   /// cloud.pcd, points in the map frame.
   void AddCloud(const std::vector<Point>& points);
+  /// grid.pgm and grid.yaml; nothing for a grid without cells.
   void AddGrid(const OccupancyGrid& grid);
   /// Where the caller writes occupancy.bt before Commit().
   std::string OccupancyPath() const { return stage_ + "/occupancy.bt"; }
