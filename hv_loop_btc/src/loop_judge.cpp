@@ -74,8 +74,9 @@ double TlsWeight(double squared, double threshold, double mu) {
 }
 
 std::vector<double> TlsWeights(const std::vector<double>& squared, double threshold, double mu) {
-  std::vector<double> weights;
-  for (const double value : squared) weights.push_back(TlsWeight(value, threshold, mu));
+  std::vector<double> weights(squared.size());
+  std::transform(squared.begin(), squared.end(), weights.begin(),
+                 [&](double value) { return TlsWeight(value, threshold, mu); });
   return weights;
 }
 
@@ -100,8 +101,9 @@ std::vector<bool> JudgeLoops(const OdometryChains& chains, const std::vector<Mea
     if (step > 0 && AllDecided(weights)) break;
   }
   problem.Move(poses);
-  std::vector<bool> accepted;
-  for (const double value : squared) accepted.push_back(value <= threshold);
+  std::vector<bool> accepted(squared.size());
+  std::transform(squared.begin(), squared.end(), accepted.begin(),
+                 [&](double value) { return value <= threshold; });
   return accepted;
 }
 

@@ -7,7 +7,7 @@ namespace hv::loop {
 Vector6d RelativePoseResidual(const Pose& T_from_to, const Pose& T_map_from, const Pose& T_map_to,
                               Matrix6d* by_from, Matrix6d* by_to) {
   const Pose T_to_from = T_map_to.inverse() * T_map_from;
-  const Vector6d residual = -se3::Log(T_to_from * T_from_to);
+  Vector6d residual = -se3::Log(T_to_from * T_from_to);
   if (by_from == nullptr && by_to == nullptr) return residual;
   const Matrix6d by_error = se3::RightJacobianInverse(residual);
   if (by_to != nullptr) *by_to = by_error;
