@@ -52,6 +52,7 @@ LoopCloser::LoopCloser(const LoopConfig& config, KeyframeStore& store)
                 [this](const SubmapRecord& record) { return CloudOf(record); }),
       gate_(config_.gate),
       vote_(config_.vote),
+      scale_(config_.odometry),
       graph_(config_.graph) {}
 
 LoopUpdate LoopCloser::Add(const Keyframe& keyframe) {
@@ -65,12 +66,13 @@ LoopUpdate LoopCloser::Finish() { return Process(submaps_.Finish()); }
 void LoopCloser::AddToGraph(const Keyframe& keyframe) {
   graph_.AddVertex(keyframe.id, keyframe.stamp, T_map_odom_ * keyframe.T_odom_imu);
   graph_.AddTilt(keyframe.id, UpInImu(keyframe));
-  Track track{keyframe.stamp, keyframe.T_odom_imu, 0.0};
+  Track track{keyframe.stamp, keyframe.T_odom_imu, UpInImu(keyframe), 0.0, keyframe.segment};
   if (last_) {
     const Pose step = last_->T_odom_imu.inverse() * keyframe.T_odom_imu;
     track.travelled_m = tracks_.at(last_->id).travelled_m + step.translation().norm();
     if (last_->segment == keyframe.segment) {
-      graph_.AddEdge(OdometryEdge(config_.odometry, *last_, keyframe));
+      odometry_.push_back(OdometryEdge(config_.odometry, *last_, keyframe));
+      graph_.AddEdge(scale_.Scaled(odometry_.back()));
     }
   }
   tracks_[keyframe.id] = track;
@@ -125,7 +127,27 @@ void LoopCloser::AddLoop(const LoopCandidate& loop) {
   edge.T_from_to = loop.T_match_query;
   edge.information = config_.information_scale * loop.score() * Matrix6d::Identity();
   graph_.AddEdge(edge);
+  const Track& match = tracks_.at(loop.match);
+  const Track& query = tracks_.at(loop.query);
+  const bool connected = match.segment == query.segment;
+  if (connected && scale_.Observe(loop.T_match_query, match.T_odom_imu.inverse() * query.T_odom_imu,
+                                  query.travelled_m - match.travelled_m)) {
+    WeighOdometryAnew();
+  }
   travelled_at_loop_m_ = std::max(travelled_at_loop_m_, tracks_.at(loop.query).travelled_m);
+}
+
+void LoopCloser::WeighOdometryAnew() {
+  PoseGraph graph(config_.graph);
+  for (const GraphVertex& vertex : graph_.Poses()) {
+    graph.AddVertex(vertex.id, vertex.stamp, vertex.T_map_imu);
+    graph.AddTilt(vertex.id, tracks_.at(vertex.id).up_imu);
+  }
+  for (const GraphEdge& edge : odometry_) graph.AddEdge(scale_.Scaled(edge));
+  for (const GraphEdge& edge : graph_.edges()) {
+    if (edge.kind == EdgeKind::kLoop) graph.AddEdge(edge);
+  }
+  graph_ = std::move(graph);
 }
 
 void LoopCloser::MarkRefused(std::vector<LoopCandidate>& fresh) {

@@ -13,6 +13,7 @@
 #include "hv_loop_btc/loop_detector.h"
 #include "hv_loop_btc/loop_vote.h"
 #include "hv_loop_btc/odometry_edge.h"
+#include "hv_loop_btc/odometry_scale.h"
 #include "hv_loop_btc/pose_graph.h"
 
 namespace hv::loop {
@@ -76,6 +77,7 @@ class LoopCloser {
   LoopPrior Prior(const Submap& submap) const;
   std::vector<Eigen::Vector3f> CloudOf(const SubmapRecord& record) const;
   void AddLoop(const LoopCandidate& loop);
+  void WeighOdometryAnew();
   void MarkRefused(std::vector<LoopCandidate>& fresh);
 
   LoopConfig config_;
@@ -84,13 +86,17 @@ class LoopCloser {
   LoopDetector detector_;
   LoopGate gate_;
   LoopVote vote_;
+  OdometryScale scale_;
   PoseGraph graph_;
+  std::vector<GraphEdge> odometry_;  ///< with the noise assumed, not scaled
   std::vector<LoopCandidate> candidates_;
   /// Of each keyframe: where odometry saw it, and the way until then.
   struct Track {
     Time stamp;
     Pose T_odom_imu = Pose::Identity();
+    Eigen::Vector3d up_imu = Eigen::Vector3d::UnitZ();
     double travelled_m = 0.0;
+    std::uint32_t segment = 0;
   };
   std::map<std::uint32_t, Track> tracks_;
   std::optional<Keyframe> last_;  ///< without points

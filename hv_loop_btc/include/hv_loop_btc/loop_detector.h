@@ -14,8 +14,8 @@
 namespace hv::loop {
 
 struct LoopDetectorConfig {
-  int max_entries = 20;
-  int max_alignments = 5;
+  int max_entries = 40;
+  int max_alignments = 8;
   double exclude_m = 15.0;
   double min_plane_overlap = 0.25;
   double min_score = 0.3;

@@ -10,10 +10,10 @@ namespace hv::loop {
 
 struct OdometryEdgeConfig {
   double correlation = 0.9;
-  double translation_sigma_m = 0.01;
-  double rotation_sigma_deg = 0.02;
-  double translation_drift_m = 0.01;
-  double rotation_drift_deg = 0.02;
+  double translation_sigma_m = 0.001;
+  double rotation_sigma_deg = 0.003;
+  double translation_drift_m = 0.002;
+  double rotation_drift_deg = 0.005;
   double degenerate_translation_m = 0.2;
   double degenerate_rotation_deg = 1.0;
 
