@@ -61,7 +61,14 @@ LoopUpdate LoopCloser::Add(const Keyframe& keyframe) {
   return Process(submaps_.Add(keyframe));
 }
 
-LoopUpdate LoopCloser::Finish() { return Process(submaps_.Finish()); }
+LoopUpdate LoopCloser::Finish() {
+  const LoopUpdate update = Process(submaps_.Finish());
+  for (LoopCandidate& candidate : candidates_) {
+    if (candidate.accepted || !candidate.reason.empty()) continue;
+    candidate.reason = "not confirmed by other submaps, or contradicted by other loops";
+  }
+  return update;
+}
 
 void LoopCloser::AddToGraph(const Keyframe& keyframe) {
   graph_.AddVertex(keyframe.id, keyframe.stamp, T_map_odom_ * keyframe.T_odom_imu);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 
 #include <Eigen/Eigenvalues>
@@ -15,8 +16,6 @@ namespace {
 /// Two normals within about 6 deg.
 constexpr float kSameNormal = 0.995F;
 constexpr float kNearlyHorizontal = 0.97F;
-/// Planes at least 45 deg apart.
-constexpr float kDifferentNormal = 0.7F;
 constexpr float kSamePlane_m = 0.3F;
 /// Share of the points that may lie under a floor that no plane shows.
 constexpr double kUnderFloor = 0.02;
@@ -134,16 +133,6 @@ ReferencePlane FindFloor(const std::vector<PlaneVoxel>& voxels, const Eigen::Vec
     floor->offset = -floor->offset;
   }
   return *floor;
-}
-
-std::optional<ReferencePlane> FindSecondPlane(const std::vector<PlaneVoxel>& voxels,
-                                              const ReferencePlane& first, double min_support) {
-  const Eigen::Vector3f normal = first.normal.cast<float>();
-  const auto different = [&](const PlaneVoxel& voxel) {
-    return std::abs(voxel.normal.dot(normal)) < kDifferentNormal;
-  };
-  const std::optional<ReferencePlane> plane = BestPlane(voxels, different);
-  return plane && plane->support >= min_support ? plane : std::nullopt;
 }
 
 }  // namespace hv::loop

@@ -54,7 +54,8 @@ class LoopCloser {
   /// Keyframes in order of time, ids growing.
   LoopUpdate Add(const Keyframe& keyframe);
 
-  /// Takes the keyframes that are not yet in a submap, at the end of the data.
+  /// At the end of the data: takes the keyframes that are not yet in a submap, and gives the
+  /// candidates that were never confirmed their reason.
   LoopUpdate Finish();
 
   /// Pose of odom in map: carries odometry of the newest segment to the corrected map.

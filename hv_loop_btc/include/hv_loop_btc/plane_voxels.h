@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -32,13 +31,10 @@ struct ReferencePlane {
 };
 
 /// The plane that heights are measured from: the floor, that is the best supported horizontal plane
-/// below the sensor; without one, the horizontal plane under nearly all points.
+/// below the sensor; without one, the horizontal plane under nearly all points. Gravity is known,
+/// so that unlike in methods section 2, step 2, no other plane has to be guessed at: the same floor
+/// is found whatever walls are in view.
 ReferencePlane FindFloor(const std::vector<PlaneVoxel>& voxels, const Eigen::Vector3d& up,
                          const std::vector<Eigen::Vector3f>& points);
-
-/// Largest merged plane that is at least 45 deg away from `first`; nullopt when none has
-/// `min_support` voxels (methods section 2, step 2: parallel reference planes say nothing new).
-std::optional<ReferencePlane> FindSecondPlane(const std::vector<PlaneVoxel>& voxels,
-                                              const ReferencePlane& first, double min_support);
 
 }  // namespace hv::loop

@@ -1,0 +1,59 @@
+#include "hv_loop_btc/submap_registration.h"
+
+#include <tuple>
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include "town.h"
+
+namespace hv::loop {
+namespace {
+
+class RegistrationTest : public ::testing::TestWithParam<std::tuple<double, double>> {};
+
+TEST_P(RegistrationTest, FindsTheRelativePose) {
+  const auto [offset_m, offset_rad] = GetParam();
+  const Town town(8);
+  std::mt19937 random(2);
+  const Pose target_pose = SensorPose(0.0, 0.0, 0.2);
+  const Pose source_pose = SensorPose(1.0, 2.0, 1.9, 0.02, 0.03);
+  const Submap target = town.SubmapAt(0, target_pose, random);
+  const Submap source = town.SubmapAt(1, source_pose, random);
+  const Pose truth = target_pose.inverse() * source_pose;
+  const Pose guess =
+      truth * MakePose(RotationFromRpy(0.02, -0.02, offset_rad), {offset_m, -offset_m, 0.1});
+  const RegistrationResult result =
+      SubmapRegistration{RegistrationConfig()}.Align(target.points, source.points, guess);
+  EXPECT_TRUE(result.converged);
+  EXPECT_LT((result.T_target_source.translation() - truth.translation()).norm(), 0.02);
+  EXPECT_LT(RotationDistance(result.T_target_source, truth), 0.004);
+  EXPECT_GT(result.fitness, 0.8);
+  EXPECT_GT(result.overlap, 0.7);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(result.information);
+  EXPECT_GT(solver.eigenvalues()[0], 0.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Guesses, RegistrationTest,
+                         ::testing::Values(std::make_tuple(0.0, 0.0), std::make_tuple(0.3, 0.05),
+                                           std::make_tuple(-0.4, -0.08)));
+
+TEST(RegistrationTest, AnotherPlaceDoesNotFit) {
+  std::mt19937 random(2);
+  const Submap target = Town(8).SubmapAt(0, SensorPose(0.0, 0.0, 0.0), random);
+  const Submap other = Town(9).SubmapAt(1, SensorPose(0.0, 0.0, 0.0), random);
+  const RegistrationResult result = SubmapRegistration{RegistrationConfig()}.Align(
+      target.points, other.points, Pose::Identity());
+  EXPECT_LT(result.fitness * result.overlap, 0.65);
+}
+
+TEST(RegistrationTest, EmptyCloudsAreTotal) {
+  std::mt19937 random(2);
+  const Submap place = Town(8).SubmapAt(0, SensorPose(0.0, 0.0, 0.0), random);
+  const SubmapRegistration registration{RegistrationConfig()};
+  EXPECT_EQ(registration.Align(place.points, {}, Pose::Identity()).fitness, 0.0);
+  EXPECT_EQ(registration.Align({}, place.points, Pose::Identity()).fitness, 0.0);
+}
+
+}  // namespace
+}  // namespace hv::loop
