@@ -16,7 +16,7 @@ constexpr double kLowestSensor_m = 0.15;
 constexpr double kFallbackSensor_m = 0.5;  ///< when nothing below the sensor was ever seen
 constexpr double kSearchRadius_m = 1.5;    ///< around the sensor
 constexpr float kStepDown_m = 0.1F;        ///< between neighbouring cells
-constexpr float kStepUp_m = 0.06F;
+constexpr float kStepUp_m = 0.08F;
 
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -34,7 +34,10 @@ GroundGrid::GroundGrid(const VoxelSpace& space, const std::vector<Vector3d>& sen
   SortColumns();
   ground_.assign(static_cast<std::size_t>(size_.prod()), kUnknown);
   measured_.assign(ground_.size(), false);
-  Grow(FindSeeds(sensor_positions));
+  const std::vector<Seed> seeds = FindSeeds(sensor_positions);
+  if (seeds.empty()) return;
+  Grow({seeds.front()});
+  GrowAgain(ElsewhereSeeds(seeds));
 }
 
 void GroundGrid::ChooseFrame() {
@@ -129,6 +132,35 @@ std::vector<GroundGrid::Seed> GroundGrid::FindSeeds(const std::vector<Vector3d>&
   return seeds;
 }
 
+/// Positions of the sensor whose ground is not what was grown there, and where nothing was measured
+/// at the height that was grown: ramps, and places that only they lead to. A floor above one that
+/// was seen is not among them.
+std::vector<GroundGrid::Seed> GroundGrid::ElsewhereSeeds(const std::vector<Seed>& seeds) const {
+  constexpr float kSameFloor_m = 0.5F;
+  std::vector<Seed> elsewhere;
+  for (const Seed& seed : seeds) {
+    if (!Contains(seed.cell) || measured_[Index(seed.cell)]) continue;
+    const bool differs = !(std::abs(ground_[Index(seed.cell)] - seed.height) < kSameFloor_m);
+    if (differs) elsewhere.push_back(seed);
+  }
+  return elsewhere;
+}
+
+/// Forgets heights that were not measured, and grows them once more with additional seeds.
+void GroundGrid::GrowAgain(const std::vector<Seed>& seeds) {
+  if (seeds.empty()) return;
+  std::vector<Seed> all = seeds;
+  for (int y = 0; y < size_.y(); ++y) {
+    for (int x = 0; x < size_.x(); ++x) {
+      const Vector2i cell(x, y);
+      float& height = ground_[Index(cell)];
+      if (measured_[Index(cell)]) all.push_back({cell, height});
+      height = kUnknown;
+    }
+  }
+  Grow(all);
+}
+
 /// Breadth first over neighbouring cells, so that each cell is reached on a shortest way.
 void GroundGrid::Grow(const std::vector<Seed>& seeds) {
   std::deque<Vector2i> front;
@@ -144,7 +176,7 @@ void GroundGrid::Grow(const std::vector<Seed>& seeds) {
          {Vector2i(1, 0), Vector2i(0, 1), Vector2i(-1, 0), Vector2i(0, -1)}) {
       const Vector2i neighbour = cell + step;
       if (!Contains(neighbour) || !std::isnan(ground_[Index(neighbour)])) continue;
-      Visit(neighbour, MeanAround(neighbour));
+      Visit(neighbour, MeanAround(neighbour, ground_[Index(cell)]));
       front.push_back(neighbour);
     }
   }
@@ -160,15 +192,19 @@ void GroundGrid::Visit(const Vector2i& cell, float from_neighbours) {
   ground_[index] = measured_[index] ? *found : from_neighbours;
 }
 
-float GroundGrid::MeanAround(const Vector2i& cell) const {
-  constexpr int kRadius = 2;
+/// Mean ground of the cells around that belong to the same floor as a neighbour of this height.
+float GroundGrid::MeanAround(const Vector2i& cell, float neighbour) const {
+  constexpr int kRadius = 1;
+  constexpr float kSameFloor_m = 0.2F;
   float sum = 0.0F;
   float count = 0.0F;
   for (int dy = -kRadius; dy <= kRadius; ++dy) {
     for (int dx = -kRadius; dx <= kRadius; ++dx) {
       const Vector2i near = cell + Vector2i(dx, dy);
-      if (!Contains(near) || std::isnan(ground_[Index(near)])) continue;
-      sum += ground_[Index(near)];
+      if (!Contains(near)) continue;
+      const float height = ground_[Index(near)];
+      if (!(std::abs(height - neighbour) < kSameFloor_m)) continue;
+      sum += height;
       count += 1.0F;
     }
   }

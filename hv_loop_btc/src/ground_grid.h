@@ -13,9 +13,10 @@
 
 namespace hv::loop {
 
-/// Height of the ground over the area that rays passed, followed outwards from under the sensor
-/// positions. Cells are voxels seen from above, or several of them where the map is so large that
-/// there would be more than `kMaxCells`.
+/// Height of the ground over the area that rays passed, followed outwards from under the first
+/// sensor position, and from under those that stand on ground which cannot be followed to. Where
+/// floors lie above each other it is the one that connects to the start. Cells are voxels seen from
+/// above, or several of them where the map is so large that there would be more than `kMaxCells`.
 class GroundGrid {
  public:
   static constexpr std::size_t kMaxCells = std::size_t{1} << 26U;
@@ -38,9 +39,11 @@ class GroundGrid {
   void SortColumns();
   std::vector<Seed> FindSeeds(const std::vector<Eigen::Vector3d>& sensor_positions) const;
   float GroundNear(const Eigen::Vector3d& sensor) const;
+  std::vector<Seed> ElsewhereSeeds(const std::vector<Seed>& seeds) const;
   void Grow(const std::vector<Seed>& seeds);
+  void GrowAgain(const std::vector<Seed>& seeds);
   void Visit(const Eigen::Vector2i& cell, float from_neighbours);
-  float MeanAround(const Eigen::Vector2i& cell) const;
+  float MeanAround(const Eigen::Vector2i& cell, float neighbour) const;
   void MarkFree(const Block& block, const MapBuilderConfig& config, OccupancyGrid& grid) const;
 
   Eigen::Vector2i CellOf(int voxel_x, int voxel_y) const;

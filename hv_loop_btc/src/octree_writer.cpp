@@ -43,9 +43,14 @@ class OcTreeFiller {
     Fill(Descend(key), Eigen::Vector3i::Zero(), Block::kSide);
   }
 
+  /// The header is OctoMap's own; its writeBinary() may print to the console and hides failures.
   void Write(const std::string& path) {
+    tree_.toMaxLikelihood();
+    tree_.prune();
     std::ofstream file(path, std::ios::binary);
-    if (file) tree_.writeBinary(file);
+    file << "# Octomap OcTree binary file\nid OcTree\nsize " << tree_.size() << "\nres "
+         << tree_.getResolution() << "\ndata\n";
+    tree_.writeBinaryNode(file, tree_.getRoot());
     file.close();
     if (!file) throw InputError(path + ": cannot be written");
   }

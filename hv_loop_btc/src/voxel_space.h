@@ -126,8 +126,9 @@ void WalkVoxels(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double v
   }
   for (;;) {
     if (!visit(voxel)) return;
-    Eigen::Index axis = 0;
-    if (!(next.minCoeff(&axis) <= 1.0)) return;
+    const int first = next[0] < next[1] ? 0 : 1;
+    const int axis = next[first] < next[2] ? first : 2;
+    if (!(next[axis] <= 1.0)) return;
     voxel[axis] += direction[axis];
     next[axis] += delta[axis];
   }

@@ -44,8 +44,9 @@ struct BuiltMap {
 /// more and end behind it, and nothing at the height of the ground is ever removed.
 ///
 /// Ground: followed from under the trajectory across neighbouring cells, so that ramps are floor
-/// and curbs are not. Cells are occupied where something stands `obstacle_min_m` to
-/// `obstacle_max_m` above the ground, free where rays passed there or hit the ground.
+/// and curbs are not; of floors above each other the one of the first keyframe. Cells are occupied
+/// where something stands `obstacle_min_m` to `obstacle_max_m` above the ground, free where rays
+/// passed there or hit the ground.
 class MapBuilder {
  public:
   /// Points of a keyframe in the frame of its pose, with PointCloud::sensor_origin. May throw.
