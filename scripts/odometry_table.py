@@ -4,18 +4,16 @@
 from __future__ import annotations
 
 import argparse
-import os
-import platform
-import re
 import subprocess
 import sys
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 import odometry_figures as figures
 from odometry_figures import Run, TunnelRun
+from table_report import Report, machine, show
 
 CELLS = {0.25: "leaf025", 0.5: "leaf050"}
 TUNNEL = "tunnel_straight_robot"
@@ -40,32 +38,6 @@ class Sequence:
     name: str
     ours: dict[float, Run]
     peers: dict[str, dict[float, Run]]
-
-
-@dataclass
-class Report:
-    """Markdown under way, and how many limits were checked and missed."""
-
-    lines: list[str] = field(default_factory=list)
-    checked: int = 0
-    missed: list[str] = field(default_factory=list)
-
-    def verdict(self, what: str, reached: bool) -> str:
-        self.checked += 1
-        if reached:
-            return "yes"
-        self.missed.append(what)
-        return "**no**"
-
-    def table(self, header: list[str], rows: list[list[str]]) -> None:
-        widths = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
-        for row in [header, ["-" * width for width in widths], *rows]:
-            cells = [text.ljust(width) for text, width in zip(row, widths)]
-            self.lines.append("| " + " | ".join(cells) + " |")
-        self.lines.append("")
-
-    def text(self, line: str) -> None:
-        self.lines += [line, ""]
 
 
 def pair(runs: dict[float, Run], figure: str, scale: float, digits: int) -> str:
@@ -215,22 +187,6 @@ def kitti_section(errors: list[figures.PathError], report: Report) -> None:
                   "reached"], rows)
 
 
-def machine(threads: int) -> str:
-    name = platform.processor() or platform.machine()
-    for line in Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            name = line.split(":", 1)[1].strip()
-            break
-    return f"{name}, {os.cpu_count()} cores; {threads} thread(s) a scan."
-
-
-def coloured(text: str) -> str:
-    """Markdown for a terminal: misses red, passes green, titles bold."""
-    text = re.sub(r"\*\*([^*|]+)\*\*", "\033[31m\\1    \033[0m", text)
-    text = re.sub(r"\| yes( *)\|", "| \033[32myes\033[0m\\1|", text)
-    return re.sub(r"(?m)^#+ (.*)$", "\033[1m\\1\033[0m", text)
-
-
 def load(name: str, arguments: argparse.Namespace) -> Sequence:
     truth = arguments.data / name / "truth.tum"
 
@@ -294,10 +250,7 @@ def main() -> int:
     except (OSError, ValueError, KeyError, subprocess.CalledProcessError) as error:
         print(f"odometry_table: {error}", file=sys.stderr)
         return 1
-    if arguments.markdown is not None:
-        arguments.markdown.write_text(text)
-    on_terminal = sys.stdout.isatty() and "NO_COLOR" not in os.environ
-    sys.stdout.write(coloured(text) if on_terminal else text)
+    show(text, arguments.markdown)
     return 0
 
 

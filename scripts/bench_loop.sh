@@ -1,0 +1,107 @@
+#!/usr/bin/env bash
+# Measures loop closing on generated sequences with revisits and prints one table.
+set -euo pipefail
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=${HV_BUILD_DIR:-$root/build}
+programs=$build/devel/lib
+
+# name, world, trajectory, seconds, distance of the places of a loop [m]
+sequences=(
+  "corridor_robot corridor robot 400 5"
+  "office_walk office walk 300 5"
+  "construction_walk construction walk 300 10"
+  "campus_segway campus segway 480 10"
+)
+drift=(0.005 0.2)  # share of the distance, degrees of heading a metre
+
+usage() {
+  cat <<USAGE
+usage: bench_loop.sh [options]
+  --data DIR       recordings, generated where missing (default: build/bench/loop_data; 18 GB)
+  --out DIR        results (default: build/bench/loop_results)
+  --only NAME      this sequence only; may be repeated
+  --table-only     no runs: the table of the results that are there
+  --markdown FILE  also write the table to FILE
+The programs are those of scripts/setup.sh.
+USAGE
+}
+
+fail() {
+  echo "bench_loop: $1" >&2
+  exit 1
+}
+
+data=$build/bench/loop_data
+out=$build/bench/loop_results
+only=()
+run=yes
+table=()
+while (($# > 0)); do
+  needs=1
+  case $1 in
+    -h | --help) usage; exit 0 ;;
+    --table-only) needs=0 ;;
+  esac
+  (($# > needs)) || fail "$1 needs an argument (--help lists the options)"
+  case $1 in
+    --data) data=$2 ;;
+    --out) out=$2 ;;
+    --only) only+=("$2") ;;
+    --table-only) run= ;;
+    --markdown) table+=(--markdown "$2") ;;
+    *) fail "unknown option $1 (--help lists the options)" ;;
+  esac
+  shift $((needs + 1))
+done
+
+for program in hv_sim/hv_simulate hv_replay/hv_slam hv_replay/hv_ape; do
+  [ -x "$programs/$program" ] || fail "$programs/$program is missing: run scripts/setup.sh first"
+done
+
+wanted() {
+  ((${#only[@]} == 0)) && return 0
+  local name
+  for name in "${only[@]}"; do [ "$name" = "$1" ] && return 0; done
+  return 1
+}
+
+# generate NAME WORLD TRAJECTORY SECONDS
+generate() {
+  [ -f "$data/$1/recording.bag" ] && [ -f "$data/$1/truth.tum" ] && return
+  echo "bench_loop: generating $1 ($4 s)" >&2
+  rm -rf "$data/$1.part"
+  "$programs/hv_sim/hv_simulate" --world "$2" --trajectory "$3" --duration "$4" --seed 2 \
+    --out "$data/$1.part" >/dev/null
+  rm -rf "${data:?}/$1"
+  mv "$data/$1.part" "$data/$1"
+}
+
+# slam NAME VARIANT [OPTION...]
+slam() {
+  local result=$out/$1/$2 bag=$data/$1/recording.bag
+  echo "bench_loop: $1, $2" >&2
+  rm -rf "$result"
+  mkdir -p "$result"
+  shift 2
+  "$programs/hv_replay/hv_slam" --config "$root/config/hilti_2022.yaml" --bag "$bag" \
+    --out "$result" --no-pictures --json "$@" >"$result/run.json" 2>"$result/log.txt" ||
+    fail "hv_slam failed on $bag: $(tail -n 1 "$result/log.txt")"
+}
+
+mkdir -p "$data" "$out"
+found=
+for sequence in "${sequences[@]}"; do
+  read -r name world trajectory seconds distance <<<"$sequence"
+  wanted "$name" || continue
+  found=yes
+  table+=(--sequence "$name" "$distance")
+  [ -n "$run" ] || continue
+  generate "$name" "$world" "$trajectory" "$seconds"
+  slam "$name" as_is
+  slam "$name" drift --inject-drift "${drift[@]}"
+done
+[ -n "$found" ] || fail "no sequence is named ${only[*]}"
+
+exec /usr/bin/python3 -B "$root/scripts/loop_table.py" --results "$out" --data "$data" \
+  --ape "$programs/hv_replay/hv_ape" "${table[@]}"
