@@ -167,9 +167,8 @@ std::vector<std::vector<BtcDatabase::Match>> BtcDatabase::FindMatches(
   return by_entry;
 }
 
-std::vector<BtcCandidate> BtcDatabase::Query(const BtcDescriptor& query,
-                                             double vertex_tolerance_m, std::size_t limit,
-                                             const Filter& filter) const {
+std::vector<BtcCandidate> BtcDatabase::Query(const BtcDescriptor& query, double vertex_tolerance_m,
+                                             std::size_t limit, const Filter& filter) const {
   std::vector<char> wanted(entries_.size());
   for (std::size_t i = 0; i < wanted.size(); ++i) wanted[i] = filter.entry(i) ? 1 : 0;
   const std::vector<std::vector<Match>> by_entry = FindMatches(query, wanted);
@@ -224,7 +223,8 @@ std::vector<BtcCandidate> BtcDatabase::Align(const BtcDescriptor& query,
 }
 
 std::size_t BtcDatabase::MemoryBytes() const {
-  std::size_t bytes = buckets_.capacity() * sizeof(std::uint32_t) + links_.capacity() * sizeof(Link);
+  std::size_t bytes =
+      buckets_.capacity() * sizeof(std::uint32_t) + links_.capacity() * sizeof(Link);
   for (const BtcDescriptor& entry : entries_) bytes += entry.MemoryBytes();
   return bytes;
 }

@@ -91,6 +91,7 @@ BtcScale BtcScale::Outdoor() {
   scale.vertex_tolerance_m = 1.5;
   scale.plane_distance_m = 0.5;
   scale.loop_distance_m = 10.0;
+  scale.confirm_score = 0.3;
   return scale;
 }
 
@@ -109,6 +110,8 @@ void BtcScale::Describe(ConfigVisitor& visitor) {
   visitor.Field("plane_distance_m", plane_distance_m,
                 "distance of planes that correspond, after alignment [m]");
   visitor.Field("loop_distance_m", loop_distance_m, "farthest places that make a loop [m]");
+  visitor.Field("confirm_score", confirm_score,
+                "mean score that loops need while odometry is uncertain, 0 to 1");
 }
 
 void BtcScale::Validate(ConfigProblems& problems) const {
@@ -123,6 +126,8 @@ void BtcScale::Validate(ConfigProblems& problems) const {
   problems.Require(vertex_tolerance_m > 0.0, "btc.vertex_tolerance_m", "must be positive");
   problems.Require(plane_distance_m > 0.0, "btc.plane_distance_m", "must be positive");
   problems.Require(loop_distance_m > 0.0, "btc.loop_distance_m", "must be positive");
+  problems.Require(confirm_score >= 0.0 && confirm_score <= 1.0, "btc.confirm_score",
+                   "must lie between 0 and 1");
 }
 
 void BtcConfig::Describe(ConfigVisitor& visitor) {
@@ -193,8 +198,8 @@ BtcDescriptor BtcExtractor::Extract(const Submap& submap) {
   const ReferencePlane floor = FindFloor(descriptor.planes, submap.up, submap.points);
   const HeightImage image(submap.points, floor, scale());
   descriptor.keypoints = image.Keypoints(static_cast<std::size_t>(config_.max_keypoints));
-  descriptor.triangles = MakeTriangles(descriptor.keypoints, scale(),
-                                       static_cast<std::size_t>(config_.max_triangles));
+  descriptor.triangles =
+      MakeTriangles(descriptor.keypoints, scale(), static_cast<std::size_t>(config_.max_triangles));
   return descriptor;
 }
 

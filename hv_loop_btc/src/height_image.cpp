@@ -10,8 +10,8 @@ namespace {
 constexpr int kSlices = 64;
 /// Neighbours with at least this share of a cell's bits continue the structure it belongs to.
 constexpr double kAlike = 0.5;
-/// A structure is a line when its extent across is less than this share of that along it (variances)
-/// and the cell lies within this share of the extent from its middle.
+/// A structure is a line when its extent across is less than this share of that along it
+/// (variances) and the cell lies within this share of the extent from its middle.
 constexpr float kLineFlatness = 0.2F;
 constexpr float kLineMiddle = 0.5F;
 constexpr int kLargestImage = 4000;
@@ -77,7 +77,8 @@ int HeightImage::Strength(int x, int y) const {
 }
 
 bool HeightImage::OnLine(const Peak& peak) const {
-  const int reach = std::max(2, static_cast<int>(std::lround(scale_.suppression_m / scale_.cell_m)));
+  const int reach =
+      std::max(2, static_cast<int>(std::lround(scale_.suppression_m / scale_.cell_m)));
   const int least = std::max(1, static_cast<int>(kAlike * peak.strength));
   float count = 0.0F;
   Eigen::Vector2f sum = Eigen::Vector2f::Zero();

@@ -115,7 +115,8 @@ LoopUpdate LoopCloser::Process(const std::optional<Submap>& submap) {
   update.detection = detector_.timing();
   const double unheld_m = std::max(0.0, prior.travelled_m - prior.travelled_at_loop_m);
   const std::vector<LoopCandidate> loops = vote_.Add(
-      update.candidates, gate_.LimitsAfter(unheld_m).translation_m, prior.T_map_keyframe);
+      update.candidates,
+      {gate_.LimitsAfter(unheld_m).translation_m, detector_.confirm_score(), prior.T_map_keyframe});
   for (const LoopCandidate& loop : loops) AddLoop(loop);
   candidates_.insert(candidates_.end(), update.candidates.begin(), update.candidates.end());
   if (loops.empty()) return update;
@@ -182,9 +183,9 @@ std::string LoopCloser::SerializedSubmaps() const {
 Pose LoopCloser::Corrected(Time stamp, const Pose& T_odom_imu) const {
   const std::vector<GraphVertex>& vertices = graph_.Poses();
   if (vertices.empty()) return T_odom_imu;
-  auto after = std::lower_bound(
-      vertices.begin(), vertices.end(), stamp,
-      [](const GraphVertex& vertex, Time time) { return vertex.stamp < time; });
+  auto after =
+      std::lower_bound(vertices.begin(), vertices.end(), stamp,
+                       [](const GraphVertex& vertex, Time time) { return vertex.stamp < time; });
   if (after == vertices.end()) --after;
   const auto before = after == vertices.begin() ? after : after - 1;
   const auto carried = [&](const GraphVertex& vertex) -> Pose {
@@ -194,8 +195,8 @@ Pose LoopCloser::Corrected(Time stamp, const Pose& T_odom_imu) const {
   const double ratio = span > 0.0 ? std::clamp((stamp - before->stamp) / span, 0.0, 1.0) : 0.0;
   const Pose earlier = carried(*before);
   const Pose later = carried(*after);
-  const Eigen::Quaterniond rotation = Eigen::Quaterniond(earlier.linear())
-                                          .slerp(ratio, Eigen::Quaterniond(later.linear()));
+  const Eigen::Quaterniond rotation =
+      Eigen::Quaterniond(earlier.linear()).slerp(ratio, Eigen::Quaterniond(later.linear()));
   return MakePose(rotation, Eigen::Vector3d((1.0 - ratio) * earlier.translation() +
                                             ratio * later.translation()));
 }

@@ -124,8 +124,8 @@ const SubmapRecord& LoopDetector::RecordOf(std::uint32_t keyframe) const {
 }
 
 void LoopDetector::Align(const Submap& submap, LoopCandidate& candidate) const {
-  const RegistrationResult aligned = registration_.Align(
-      clouds_(RecordOf(candidate.match)), submap.points, candidate.T_match_query);
+  const RegistrationResult aligned = registration_.Align(clouds_(RecordOf(candidate.match)),
+                                                         submap.points, candidate.T_match_query);
   candidate.T_match_query = aligned.T_target_source;
   candidate.fitness = aligned.fitness;
   candidate.overlap = aligned.overlap;

@@ -34,8 +34,7 @@ void LoopVoteConfig::Validate(ConfigProblems& problems) const {
   problems.Require(window >= 1, "vote.window", "must be at least 1");
   problems.Require(confirmations >= 1 && confirmations <= window, "vote.confirmations",
                    "must be at least 1 and at most vote.window");
-  problems.Require(margin >= 0.0 && margin < 1.0, "vote.margin",
-                   "must be at least 0 and below 1");
+  problems.Require(margin >= 0.0 && margin < 1.0, "vote.margin", "must be at least 0 and below 1");
   problems.Require(agree_m > 0.0, "vote.agree_m", "must be positive");
   problems.Require(agree_deg > 0.0, "vote.agree_deg", "must be positive");
 }
@@ -61,6 +60,7 @@ LoopVote::Support LoopVote::SupportOf(const LoopCandidate& candidate, const Pose
       best = std::max(best, other.score());
     }
     support.score += best;
+    support.ballots += best > 0.0 ? 1 : 0;
   }
   return support;
 }
@@ -73,7 +73,8 @@ bool LoopVote::UniqueNow(const Ballot& ballot, const Poses& poses) const {
   });
 }
 
-std::vector<LoopCandidate> LoopVote::Count(const Poses& poses) {
+std::vector<LoopCandidate> LoopVote::Count(const Circumstances& circumstances) {
+  const Poses& poses = circumstances.poses;
   Support best;
   const LoopCandidate* winner = nullptr;
   for (const LoopCandidate& candidate : ballots_.back().candidates) {
@@ -86,6 +87,7 @@ std::vector<LoopCandidate> LoopVote::Count(const Poses& poses) {
   for (const auto& [ballot, number] : best.members) voters.push_back(ballot);
   voters.erase(std::unique(voters.begin(), voters.end()), voters.end());
   if (voters.size() < static_cast<std::size_t>(config_.confirmations)) return {};
+  if (best.mean() < circumstances.confirm_score) return {};
   for (const Ballot& ballot : ballots_) {
     for (const LoopCandidate& rival : ballot.candidates) {
       if (Agree(*winner, rival, poses)) continue;
@@ -101,20 +103,21 @@ std::vector<LoopCandidate> LoopVote::Count(const Poses& poses) {
 }
 
 std::vector<LoopCandidate> LoopVote::Add(const std::vector<LoopCandidate>& candidates,
-                                          double uncertainty_m, const Poses& poses) {
+                                         const Circumstances& circumstances) {
   Ballot ballot;
   for (const LoopCandidate& candidate : candidates) {
     if (candidate.reason.empty()) ballot.candidates.push_back(candidate);
   }
-  std::stable_sort(ballot.candidates.begin(), ballot.candidates.end(),
-                   [](const LoopCandidate& a, const LoopCandidate& b) {
-                     return a.score() > b.score();
-                   });
+  std::stable_sort(
+      ballot.candidates.begin(), ballot.candidates.end(),
+      [](const LoopCandidate& a, const LoopCandidate& b) { return a.score() > b.score(); });
   ballots_.push_back(std::move(ballot));
   while (ballots_.size() > static_cast<std::size_t>(config_.window)) ballots_.pop_front();
   Ballot& newest = ballots_.back();
   if (newest.candidates.empty()) return {};
-  if (uncertainty_m > config_.sure_within_m || !UniqueNow(newest, poses)) return Count(poses);
+  const Poses& poses = circumstances.poses;
+  const bool sure = circumstances.uncertainty_m <= config_.sure_within_m;
+  if (!sure || !UniqueNow(newest, poses)) return Count(circumstances);
   newest.decided = true;
   std::vector<LoopCandidate> loops;
   for (const LoopCandidate& candidate : newest.candidates) {

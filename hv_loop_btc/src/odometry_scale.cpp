@@ -31,8 +31,7 @@ bool OdometryScale::Observe(const Pose& T_loop, const Pose& T_odometry, double t
   const double moved = (T_loop.translation() - T_odometry.translation()).norm();
   const double turn_error = std::max(0.0, turned - kLoopError_rad);
   const double move_error = std::max(0.0, moved - kLever * turned * way - kLoopError_m);
-  rotation_ratios_.push_back(turn_error /
-                             (config_.rotation_drift_deg * kRadians * std::sqrt(way)));
+  rotation_ratios_.push_back(turn_error / (config_.rotation_drift_deg * kRadians * std::sqrt(way)));
   translation_ratios_.push_back(move_error / (config_.translation_drift_m * std::sqrt(way)));
   const double rotation = std::max(1.0, Quantile(rotation_ratios_));
   const double translation = std::max(1.0, Quantile(translation_ratios_));

@@ -68,9 +68,7 @@ class Reader {
     return here;
   }
   bool AtEnd() const { return at_ == bytes_.size(); }
-  [[noreturn]] void Fail(const std::string& what) const {
-    throw InputError(source_ + ": " + what);
-  }
+  [[noreturn]] void Fail(const std::string& what) const { throw InputError(source_ + ": " + what); }
 
  private:
   const std::string& bytes_;

@@ -57,7 +57,7 @@ class GaussianGrid {
   /// unknown.
   const Gaussian* Nearest(const Eigen::Vector3d& point) const {
     const Cube cube = CubeOf(point.cast<float>(), inverse_size_);
-    static constexpr int kSteps[7][3] = {{0, 0, 0},  {1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
+    static constexpr int kSteps[7][3] = {{0, 0, 0},  {1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
                                          {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
     const Gaussian* best = nullptr;
     double least = 0.0;
@@ -78,8 +78,7 @@ class GaussianGrid {
   static Gaussian Fit(const Eigen::Vector3d& mean, const Eigen::Matrix3d& covariance) {
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
     solver.computeDirect(covariance);
-    const Eigen::Vector3d variance =
-        solver.eigenvalues().cwiseMax(kLeastSigma_m * kLeastSigma_m);
+    const Eigen::Vector3d variance = solver.eigenvalues().cwiseMax(kLeastSigma_m * kLeastSigma_m);
     Gaussian gaussian;
     gaussian.mean = mean;
     gaussian.normal = solver.eigenvectors().col(0);

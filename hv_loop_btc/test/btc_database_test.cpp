@@ -78,9 +78,8 @@ TEST(BtcDatabaseTest, TheFilterLeavesOutEntriesAndPoses) {
 TEST(BtcDatabaseTest, AnEmptyDescriptorFindsNothing) {
   Library library(3);
   EXPECT_TRUE(library.database.Query(BtcDescriptor(), 0.5, 10, Everything()).empty());
-  EXPECT_TRUE(BtcDatabase(BtcConfig())
-                  .Query(library.database.entry(0), 0.5, 10, Everything())
-                  .empty());
+  EXPECT_TRUE(
+      BtcDatabase(BtcConfig()).Query(library.database.entry(0), 0.5, 10, Everything()).empty());
 }
 
 }  // namespace

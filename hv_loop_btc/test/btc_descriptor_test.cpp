@@ -97,9 +97,11 @@ TEST(BtcExtractorTest, EmptyAndTinyCloudsGiveEmptyDescriptors) {
 
 TEST(BtcExtractorTest, TheFirstSubmapDecidesTheScale) {
   Submap far;
-  for (int i = 0; i < 1000; ++i) far.points.emplace_back(20.0F + 0.01F * static_cast<float>(i), 0.0F, 0.0F);
+  for (int i = 0; i < 1000; ++i)
+    far.points.emplace_back(20.0F + 0.01F * static_cast<float>(i), 0.0F, 0.0F);
   Submap near;
-  for (int i = 0; i < 1000; ++i) near.points.emplace_back(2.0F + 0.001F * static_cast<float>(i), 0.0F, 0.0F);
+  for (int i = 0; i < 1000; ++i)
+    near.points.emplace_back(2.0F + 0.001F * static_cast<float>(i), 0.0F, 0.0F);
   BtcExtractor outdoor{BtcConfig()};
   EXPECT_EQ(outdoor.scale_name(), "auto");
   outdoor.Extract(far);

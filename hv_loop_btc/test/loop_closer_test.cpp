@@ -69,8 +69,7 @@ class LoopCloserTest : public ::testing::Test {
     double worst = 0.0;
     for (const GraphVertex& vertex : closer.graph().Poses()) {
       const Pose truth = Rounds::TruthAt(static_cast<int>(vertex.id));
-      worst = std::max(worst,
-                       (vertex.T_map_imu.translation() - truth.translation()).norm());
+      worst = std::max(worst, (vertex.T_map_imu.translation() - truth.translation()).norm());
     }
     return worst;
   }

@@ -15,10 +15,11 @@ StoredSubmaps Example() {
   StoredSubmaps submaps;
   for (std::uint32_t i = 0; i < 3; ++i) {
     const Submap submap = town.SubmapAt(10 * i, SensorPose(i, 0.0, 0.4 * i), random);
-    submaps.records.push_back({submap.keyframe, submap.stamp,
-                               {{submap.keyframe, Pose::Identity()},
-                                {submap.keyframe + 1, SensorPose(0.5, 0.1, 0.2)}},
-                               2.5 * i});
+    submaps.records.push_back(
+        {submap.keyframe,
+         submap.stamp,
+         {{submap.keyframe, Pose::Identity()}, {submap.keyframe + 1, SensorPose(0.5, 0.1, 0.2)}},
+         2.5 * i});
     submaps.descriptors.push_back(extractor.Extract(submap));
   }
   submaps.scale = extractor.scale_name();

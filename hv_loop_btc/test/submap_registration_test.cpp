@@ -2,8 +2,8 @@
 
 #include <tuple>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "town.h"
 
@@ -42,8 +42,8 @@ TEST(RegistrationTest, AnotherPlaceDoesNotFit) {
   std::mt19937 random(2);
   const Submap target = Town(8).SubmapAt(0, SensorPose(0.0, 0.0, 0.0), random);
   const Submap other = Town(9).SubmapAt(1, SensorPose(0.0, 0.0, 0.0), random);
-  const RegistrationResult result = SubmapRegistration{RegistrationConfig()}.Align(
-      target.points, other.points, Pose::Identity());
+  const RegistrationResult result =
+      SubmapRegistration{RegistrationConfig()}.Align(target.points, other.points, Pose::Identity());
   EXPECT_LT(result.fitness * result.overlap, 0.65);
 }
 

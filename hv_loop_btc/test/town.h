@@ -37,7 +37,8 @@ class Town {
     const Eigen::Vector3d here = T_town_sensor.translation();
     const auto add = [&](const Eigen::Vector3d& p) {
       if ((p - here).head<2>().norm() > reach) return;
-      const Eigen::Vector3d noisy = p + Eigen::Vector3d(noise(random), noise(random), noise(random));
+      const Eigen::Vector3d noisy =
+          p + Eigen::Vector3d(noise(random), noise(random), noise(random));
       points.push_back((T_sensor_town * noisy).cast<float>());
     };
     for (const Block& block : blocks_) {

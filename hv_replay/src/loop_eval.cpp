@@ -46,8 +46,7 @@ std::string Durations(const loop::LoopDetector::Timing& timing) {
 class Evaluation {
  public:
   Evaluation(const loop::LoopConfig& config, const std::string& csv)
-      : store_(csv + ".clouds", config.store, Eigen::Vector3d::Zero()),
-        closer_(config, store_) {}
+      : store_(csv + ".clouds", config.store, Eigen::Vector3d::Zero()), closer_(config, store_) {}
 
   void Add(std::uint32_t id, const StampedPose& pose, std::vector<Point> points) {
     Keyframe keyframe;

@@ -11,8 +11,7 @@ namespace hv::replay {
 LoopRun::LoopRun(const SlamConfig& config, const std::string& out_dir)
     : config_(config),
       out_dir_(out_dir),
-      keyframes_(config.system.output.keyframe_distance_m,
-                 config.system.output.keyframe_angle_deg),
+      keyframes_(config.system.output.keyframe_distance_m, config.system.output.keyframe_angle_deg),
       store_(out_dir + "/keyframes", config.loop.store,
              config.system.odometry.extrinsic.T_imu_lidar().translation()),
       closer_(config.loop, store_) {}
@@ -59,9 +58,11 @@ void LoopRun::WriteMap() const {
   }
   writer.AddGraph(closer_.graph().ToData());
   ProgressLine progress("map");
-  const loop::BuiltMap built = loop::MapBuilder(config_.map).Build(
-      closer_.graph().Poses(), [this](std::uint32_t id) { return store_.Load(id); },
-      writer.OccupancyPath(), [&progress](double share) { progress.Update(share, ""); });
+  const loop::BuiltMap built =
+      loop::MapBuilder(config_.map)
+          .Build(
+              closer_.graph().Poses(), [this](std::uint32_t id) { return store_.Load(id); },
+              writer.OccupancyPath(), [&progress](double share) { progress.Update(share, ""); });
   writer.AddCloud(built.cloud);
   writer.AddGrid(built.grid);
   writer.AddDescriptors(closer_.SerializedSubmaps());

@@ -5,7 +5,8 @@
 namespace hv::replay {
 
 std::string LoopColumns() {
-  return "query_stamp,match_stamp,query,match,x,y,z,qx,qy,qz,qw,votes,inliers,plane_overlap,fitness,"
+  return "query_stamp,match_stamp,query,match,x,y,z,qx,qy,qz,qw,votes,inliers,plane_overlap,"
+         "fitness,"
          "overlap,score,accepted,reason";
 }
 
@@ -15,9 +16,9 @@ std::string LoopRow(const loop::LoopCandidate& loop) {
   char numbers[400];
   std::snprintf(numbers, sizeof(numbers),
                 ",%u,%u,%.6f,%.6f,%.6f,%.8f,%.8f,%.8f,%.8f,%d,%d,%.4f,%.4f,%.4f,%.4f,%d,",
-                loop.query, loop.match, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w(),
-                loop.votes, loop.inliers, loop.plane_overlap, loop.fitness, loop.overlap,
-                loop.score(), loop.accepted ? 1 : 0);
+                loop.query, loop.match, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w(), loop.votes,
+                loop.inliers, loop.plane_overlap, loop.fitness, loop.overlap, loop.score(),
+                loop.accepted ? 1 : 0);
   return ToString(loop.query_stamp) + "," + ToString(loop.match_stamp) + numbers + loop.reason;
 }
 

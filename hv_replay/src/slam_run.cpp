@@ -115,7 +115,8 @@ SlamRun::SlamRun(const SlamConfig& config, const std::vector<std::string>& bags,
               NeedOf(config.system)),
       decoder_(config.system.points),
       pipeline_(config.system.odometry),
-      timing_(out_dir + "/timing.csv", "stamp,preprocess_ms,update_ms,map_ms,total_ms,voxels,rss_mb"),
+      timing_(out_dir + "/timing.csv",
+              "stamp,preprocess_ms,update_ms,map_ms,total_ms,voxels,rss_mb"),
       covariance_(out_dir + "/covariance.csv",
                   "stamp,xx,xy,xz,yy,yz,zz,rxrx,rxry,rxrz,ryry,ryrz,rzrz,"
                   "degenerate_translation,degenerate_rotation") {
@@ -166,7 +167,8 @@ void SlamRun::AddImu(const BagImu& imu) {
 }
 
 void SlamRun::Drain(bool flush) {
-  while (auto result = flush ? pipeline_.Flush() : pipeline_.ProcessNext()) Take(std::move(*result));
+  while (auto result = flush ? pipeline_.Flush() : pipeline_.ProcessNext())
+    Take(std::move(*result));
   for (const std::string& event : pipeline_.TakeEvents()) Warn(event);
 }
 

@@ -2,8 +2,8 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <yaml-cpp/yaml.h>
+#include <CLI/CLI.hpp>
 
 #include "hv_core/config.h"
 #include "hv_core/error.h"
@@ -82,7 +82,8 @@ int Run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("LiDAR-inertial odometry and loop closing over bags, without a ROS master.", "hv_slam");
+  CLI::App app("LiDAR-inertial odometry and loop closing over bags, without a ROS master.",
+               "hv_slam");
   Arguments arguments;
   Declare(app, arguments);
   return hv::replay::RunTool(app, argc, argv, [&arguments] { return Run(arguments); });

@@ -11,9 +11,9 @@ namespace hv::loop {
 
 /// A stored descriptor that resembles the one asked for.
 struct BtcCandidate {
-  std::size_t entry = 0;  ///< number of the stored descriptor
-  int votes = 0;          ///< triangles that agree
-  int inliers = 0;        ///< of these, with one common relative pose
+  std::size_t entry = 0;                  ///< number of the stored descriptor
+  int votes = 0;                          ///< triangles that agree
+  int inliers = 0;                        ///< of these, with one common relative pose
   Pose T_entry_query = Pose::Identity();  ///< that pose, as good as the keypoints
 };
 

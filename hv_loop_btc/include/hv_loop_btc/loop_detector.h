@@ -36,8 +36,8 @@ struct SubmapRecord {
 struct LoopPrior {
   std::function<Pose(std::uint32_t)> T_map_keyframe;  ///< of stored submaps' keyframes
   Pose T_map_query = Pose::Identity();                ///< where odometry leads
-  double travelled_m = 0.0;            ///< at the query
-  double travelled_at_loop_m = 0.0;    ///< at the newest keyframe that a loop holds
+  double travelled_m = 0.0;                           ///< at the query
+  double travelled_at_loop_m = 0.0;                   ///< at the newest keyframe that a loop holds
 };
 
 /// Finds stored submaps that show the place of a new one: descriptors propose, planes pick, fine
@@ -64,6 +64,8 @@ class LoopDetector {
 
   /// How far two submaps of a loop may be apart [m].
   double loop_distance_m() const { return extractor_.scale().loop_distance_m; }
+  /// Mean score that loops need while odometry is uncertain.
+  double confirm_score() const { return extractor_.scale().confirm_score; }
   const Timing& timing() const { return timing_; }
   const BtcDatabase& database() const { return database_; }
   const std::vector<SubmapRecord>& records() const { return records_; }

@@ -33,12 +33,19 @@ class LoopVote {
   /// Pose in the map of a keyframe, as believed now.
   using Poses = std::function<Pose(std::uint32_t)>;
 
+  /// What the candidates are judged by.
+  struct Circumstances {
+    double uncertainty_m = 0.0;  ///< how far odometry may be off
+    double confirm_score = 0.0;  ///< mean score that loops need while it is uncertain
+    Poses poses;
+  };
+
   explicit LoopVote(const LoopVoteConfig& config) : config_(config) {}
 
-  /// Takes the aligned candidates of one submap, and how far odometry may be off there [m]. Returns
-  /// those that are loops, also of earlier submaps; each is returned once.
+  /// Takes the aligned candidates of one submap. Returns those that are loops, also of earlier
+  /// submaps; each is returned once.
   std::vector<LoopCandidate> Add(const std::vector<LoopCandidate>& candidates,
-                                 double uncertainty_m, const Poses& poses);
+                                 const Circumstances& circumstances);
 
  private:
   /// The candidates of one submap.
@@ -49,13 +56,16 @@ class LoopVote {
   /// A candidate and those that ask for the same movement, at most one a submap.
   struct Support {
     std::vector<std::pair<std::size_t, std::size_t>> members;  ///< ballot, candidate
-    double score = 0.0;
+    double score = 0.0;                                        ///< sum of the best of each submap
+    std::size_t ballots = 0;                                   ///< submaps that agree
+
+    double mean() const { return score / static_cast<double>(ballots); }
   };
 
   bool Agree(const LoopCandidate& a, const LoopCandidate& b, const Poses& poses) const;
   Support SupportOf(const LoopCandidate& candidate, const Poses& poses) const;
   bool UniqueNow(const Ballot& ballot, const Poses& poses) const;
-  std::vector<LoopCandidate> Count(const Poses& poses);
+  std::vector<LoopCandidate> Count(const Circumstances& circumstances);
 
   LoopVoteConfig config_;
   std::deque<Ballot> ballots_;  ///< newest last

@@ -31,8 +31,8 @@ struct SubmapMember {
 /// What several consecutive keyframes see, as one cloud (methods section 2): a single sparse scan
 /// is not enough for descriptors. Its frame is that of its middle keyframe.
 struct Submap {
-  std::uint32_t keyframe = 0;  ///< id of the middle keyframe, names the submap
-  Time stamp;                  ///< of that keyframe
+  std::uint32_t keyframe = 0;                     ///< id of the middle keyframe, names the submap
+  Time stamp;                                     ///< of that keyframe
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< against gravity, submap frame, unit
   std::vector<SubmapMember> members;              ///< in order of time
   std::vector<Eigen::Vector3f> points;            ///< thinned, submap frame [m]
