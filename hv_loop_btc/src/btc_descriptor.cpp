@@ -68,7 +68,9 @@ std::vector<BtcTriangle> MakeTriangles(const std::vector<BtcKeypoint>& keypoints
     };
     const float longest = side(0, 1);
     const bool flat = longest > kFlatness * (side(0, 2) + side(1, 2));
-    if (flat || longest > static_cast<float>(scale.max_side_m)) continue;
+    const bool sized = side(1, 2) >= static_cast<float>(scale.min_side_m) &&
+                       longest <= static_cast<float>(scale.max_side_m);
+    if (flat || !sized) continue;
     triangles.push_back(triangle);
     if (triangles.size() == limit) break;
   }

@@ -1,6 +1,7 @@
 #include "hv_loop_btc/loop_closer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "hv_loop_btc/submap_file.h"
@@ -18,8 +19,8 @@ LoopConfig Checked(const LoopConfig& config) {
 }  // namespace
 
 void LoopConfig::Describe(ConfigVisitor& visitor) {
-  visitor.Field("information_scale", information_scale,
-                "weight of a perfect loop (lambda of Eq. 10) [1/m^2, 1/rad^2]");
+  visitor.Field("loop_sigma_m", loop_sigma_m, "standard deviation of a perfect loop (Eq. 10) [m]");
+  visitor.Field("loop_sigma_deg", loop_sigma_deg, "the same for rotation [deg]");
   visitor.Section("submap", submap, "consecutive keyframes as one cloud");
   visitor.Section("btc", btc, "boundary triangle descriptors");
   visitor.Section("detector", detector, "search for candidates");
@@ -32,7 +33,8 @@ void LoopConfig::Describe(ConfigVisitor& visitor) {
 }
 
 void LoopConfig::Validate(ConfigProblems& problems) const {
-  problems.Require(information_scale > 0.0, "loop.information_scale", "must be positive");
+  problems.Require(loop_sigma_m > 0.0, "loop.loop_sigma_m", "must be positive");
+  problems.Require(loop_sigma_deg > 0.0, "loop.loop_sigma_deg", "must be positive");
   submap.Validate(problems);
   btc.Validate(problems);
   detector.Validate(problems);
@@ -133,7 +135,11 @@ void LoopCloser::AddLoop(const LoopCandidate& loop) {
   edge.from = loop.match;
   edge.to = loop.query;
   edge.T_from_to = loop.T_match_query;
-  edge.information = config_.information_scale * loop.score() * Matrix6d::Identity();
+  const double sigma_rad = config_.loop_sigma_deg * M_PI / 180.0;
+  Vector6d weights;
+  weights.head<3>().setConstant(1.0 / (config_.loop_sigma_m * config_.loop_sigma_m));
+  weights.tail<3>().setConstant(1.0 / (sigma_rad * sigma_rad));
+  edge.information = loop.score() * weights.asDiagonal().toDenseMatrix();
   graph_.AddEdge(edge);
   const Track& match = tracks_.at(loop.match);
   const Track& query = tracks_.at(loop.query);

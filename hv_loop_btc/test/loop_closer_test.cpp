@@ -44,7 +44,7 @@ struct Rounds {
     return keyframe;
   }
 
-  Town town{21, 60};
+  Town town{21, 25};
   std::mt19937 random{6};
   double drift;
   int next = 0;

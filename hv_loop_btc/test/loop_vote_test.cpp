@@ -37,7 +37,9 @@ TEST(LoopVoteTest, WhereOdometryIsUncertainOthersMustConfirm) {
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(config.confirmations); ++i) {
     const auto loops = vote.Add({Asks(200 + 3 * i, 5.0, 0.6)}, Circumstances(20.0));
     accepted += loops.size();
-    if (i + 1 < static_cast<std::uint32_t>(config.confirmations)) EXPECT_TRUE(loops.empty());
+    if (i + 1 < static_cast<std::uint32_t>(config.confirmations)) {
+      EXPECT_TRUE(loops.empty());
+    }
   }
   EXPECT_EQ(accepted, static_cast<std::size_t>(config.confirmations));
 }

@@ -13,7 +13,7 @@ namespace hv::loop {
 /// A square of upright blocks on a floor at z = 0, the same for the same seed.
 class Town {
  public:
-  explicit Town(unsigned seed, int blocks = 40) {
+  explicit Town(unsigned seed, int blocks = 18) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> place(-kHalf, kHalf);
     std::uniform_real_distribution<double> width(0.3, 1.6);
@@ -52,7 +52,7 @@ class Town {
         add(block.corner + Eigen::Vector3d(dx, dy, unit(random) * block.size.z()));
       }
     }
-    for (int i = 0; i < static_cast<int>(0.3 * 4.0 * reach * reach * per_m2); ++i) {
+    for (int i = 0; i < static_cast<int>(4.0 * reach * reach * per_m2); ++i) {
       add({here.x() + (2.0 * unit(random) - 1.0) * reach,
            here.y() + (2.0 * unit(random) - 1.0) * reach, 0.0});
     }
@@ -66,7 +66,7 @@ class Town {
     submap.stamp = Time::FromSeconds(keyframe);
     submap.up = T_town_sensor.linear().transpose() * Eigen::Vector3d::UnitZ();
     submap.members.push_back({keyframe, Pose::Identity()});
-    submap.points = Thinned(Seen(T_town_sensor, 15.0, 60.0, random), 0.15);
+    submap.points = Thinned(Seen(T_town_sensor, 15.0, 120.0, random), 0.15);
     return submap;
   }
 

@@ -20,7 +20,8 @@ namespace hv::loop {
 
 /// Everything that loop closing can be told. Section `loop` of the configuration file.
 struct LoopConfig {
-  double information_scale = 400.0;
+  double loop_sigma_m = 0.05;
+  double loop_sigma_deg = 0.5;
   SubmapConfig submap;
   BtcConfig btc;
   LoopDetectorConfig detector;
