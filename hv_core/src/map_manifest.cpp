@@ -43,7 +43,7 @@ std::string CheckSum(const std::string& text, const std::string& source) {
   if (line == std::string::npos || (line > 0 && text[line - 1] != '\n')) {
     Fail(source, "is cut short: its own checksum is missing");
   }
-  const std::string body = text.substr(0, line);
+  std::string body = text.substr(0, line);
   if (text.substr(line) != kSumKey + Sha256(body) + "\n") {
     Fail(source, "does not match its own checksum: damaged or edited");
   }

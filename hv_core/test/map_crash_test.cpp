@@ -8,6 +8,7 @@
 #include <chrono>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <thread>
 
 #include "small_map.h"
@@ -43,21 +44,31 @@ std::size_t CountStages(const std::string& folder) {
   for (;; ++variant) SaveSmallMap(path, scratch, variant, options);
 }
 
+/// Seconds that the quickest of a few saves took; the map is then variant 0.
+double QuickestSave(const std::string& path, const std::string& scratch, MapWriterOptions options) {
+  double quickest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 5; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    SaveSmallMap(path, scratch, 0, options);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    quickest = std::min(quickest, elapsed.count());
+  }
+  return quickest;
+}
+
 /// Kills writers at moments spread over up to three saves, however fast the machine is.
 void KillWhileSaving(bool exchange) {
   const TemporaryFolder folder;
   const std::string path = folder / "map";
   const MapWriterOptions options{exchange};
-  const auto start = std::chrono::steady_clock::now();
-  SaveSmallMap(path, folder / "work", 0, options);
-  const auto one_save = std::chrono::steady_clock::now() - start;
+  const double one_save_s = QuickestSave(path, folder / "work", options);
   std::mt19937 random(exchange ? 1 : 2);
   std::uniform_real_distribution<double> saves(0.0, 3.0);
   std::uint32_t last = 0;
   for (int round = 0; round < 120; ++round) {
     const pid_t child = ::fork();
     if (child == 0) SaveForever(path, folder / "work", last + 1, options);
-    std::this_thread::sleep_for(saves(random) * one_save);
+    std::this_thread::sleep_for(std::chrono::duration<double>(saves(random) * one_save_s));
     ::kill(child, SIGKILL);
     ASSERT_EQ(::waitpid(child, nullptr, 0), child);
     const std::uint32_t variant = VariantOf(path);

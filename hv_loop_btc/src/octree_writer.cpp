@@ -115,7 +115,7 @@ class OcTreeFiller {
 
   RootedOcTree tree_;
   std::unordered_set<std::uint64_t> moving_;
-  std::array<State, Block::kSide * Block::kSide * Block::kSide> states_{};
+  std::array<State, Block::kVoxels> states_{};
 };
 
 }  // namespace

@@ -50,10 +50,11 @@ struct Surface {
 struct Block {
   static constexpr int kBits = 4;
   static constexpr int kSide = 1 << kBits;
+  static constexpr std::size_t kVoxels = std::size_t{1} << (3 * kBits);
 
   VoxelIndex index = VoxelIndex::Zero();  ///< in blocks
-  std::bitset<kSide * kSide * kSide> hit;
-  std::bitset<kSide * kSide * kSide> free;
+  std::bitset<kVoxels> hit;
+  std::bitset<kVoxels> free;
 
   /// Bit of the voxel with these remainders, each in [0, kSide).
   static std::size_t Bit(int x, int y, int z) {
