@@ -8,7 +8,7 @@
 #include <chrono>
 #include <fstream>
 #include <functional>
-#include <limits>
+#include <stdexcept>
 #include <thread>
 
 #include "small_map.h"
@@ -38,44 +38,69 @@ std::size_t CountStages(const std::string& folder) {
   return count;
 }
 
-/// Saves larger and larger variants until killed.
-[[noreturn]] void SaveForever(const std::string& path, const std::string& scratch,
-                              std::uint32_t variant, MapWriterOptions options) {
-  for (;; ++variant) SaveSmallMap(path, scratch, variant, options);
-}
-
-/// Seconds that the quickest of a few saves took; the map is then variant 0.
-double QuickestSave(const std::string& path, const std::string& scratch, MapWriterOptions options) {
-  double quickest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 5; ++i) {
-    const auto start = std::chrono::steady_clock::now();
-    SaveSmallMap(path, scratch, 0, options);
-    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-    quickest = std::min(quickest, elapsed.count());
+/// A process that saves larger and larger variants until killed, and tells of each save.
+class Saver {
+ public:
+  Saver(const std::string& path, const std::string& scratch, std::uint32_t variant,
+        MapWriterOptions options) {
+    int ends[2];
+    if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
+    child_ = ::fork();
+    if (child_ == 0) SaveForever(path, scratch, variant, options, ends[1]);
+    ::close(ends[1]);
+    saved_ = ends[0];
   }
-  return quickest;
-}
+  ~Saver() {
+    ::kill(child_, SIGKILL);
+    ::waitpid(child_, nullptr, 0);
+    ::close(saved_);
+  }
+  Saver(const Saver&) = delete;
+  Saver& operator=(const Saver&) = delete;
 
-/// Kills writers at moments spread over up to three saves, however fast the machine is.
+  /// Waits for the next save and returns the seconds that took.
+  double WaitForSave() const {
+    const auto start = std::chrono::steady_clock::now();
+    char byte = 0;
+    EXPECT_EQ(::read(saved_, &byte, 1), 1);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    return elapsed.count();
+  }
+
+ private:
+  [[noreturn]] static void SaveForever(const std::string& path, const std::string& scratch,
+                                       std::uint32_t variant, MapWriterOptions options, int saved) {
+    for (;; ++variant) {
+      SaveSmallMap(path, scratch, variant, options);
+      if (::write(saved, "s", 1) != 1) ::_exit(1);
+    }
+  }
+
+  pid_t child_ = -1;
+  int saved_ = -1;
+};
+
+/// Kills writers somewhere within their first, second or third save, however fast the machine is.
 void KillWhileSaving(bool exchange) {
   const TemporaryFolder folder;
   const std::string path = folder / "map";
   const MapWriterOptions options{exchange};
-  const double one_save_s = QuickestSave(path, folder / "work", options);
+  SaveSmallMap(path, folder / "work", 0, options);
   std::mt19937 random(exchange ? 1 : 2);
-  std::uniform_real_distribution<double> saves(0.0, 3.0);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
   std::uint32_t last = 0;
+  double save_s = 0.01;
   for (int round = 0; round < 120; ++round) {
-    const pid_t child = ::fork();
-    if (child == 0) SaveForever(path, folder / "work", last + 1, options);
-    std::this_thread::sleep_for(std::chrono::duration<double>(saves(random) * one_save_s));
-    ::kill(child, SIGKILL);
-    ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+    {
+      const Saver saver(path, folder / "work", last + 1, options);
+      for (auto saves = random() % 3; saves > 0; --saves) save_s = saver.WaitForSave();
+      std::this_thread::sleep_for(std::chrono::duration<double>(share(random) * save_s));
+    }
     const std::uint32_t variant = VariantOf(path);
     ASSERT_GE(variant, last);
     last = variant;
   }
-  EXPECT_GT(last, 0U);
+  EXPECT_GT(last, 60U);
   SaveSmallMap(path, folder / "work", last + 1, options);
   EXPECT_EQ(VariantOf(path), last + 1);
   EXPECT_EQ(CountStages(folder.path()), 0U);
