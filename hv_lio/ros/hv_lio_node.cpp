@@ -3,9 +3,11 @@
 #include <ros/ros.h>
 
 #include "hv_core/error.h"
+#include "hv_core/memory.h"
 #include "odometry_node.h"
 
 int main(int argc, char** argv) {
+  hv::KeepFreedMemory();
   ros::init(argc, argv, "hv_lio");
   try {
     const hv::lio::OdometryNode node(ros::NodeHandle(), ros::NodeHandle("~"));

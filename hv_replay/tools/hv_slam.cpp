@@ -7,6 +7,7 @@
 
 #include "hv_core/config.h"
 #include "hv_core/error.h"
+#include "hv_core/memory.h"
 #include "hv_replay/slam_run.h"
 #include "tool.h"
 
@@ -82,6 +83,7 @@ int Run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  hv::KeepFreedMemory();
   CLI::App app("LiDAR-inertial odometry and loop closing over bags, without a ROS master.",
                "hv_slam");
   Arguments arguments;
