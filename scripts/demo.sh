@@ -30,7 +30,7 @@ step "simulating a minute of walking over a construction site"
 step "checking the recording"
 "$bin/hv_replay/hv_check_bag" --bag "$bag" --config "$config"
 
-step "odometry"
+step "odometry, loop closing and map"
 "$bin/hv_replay/hv_slam" --bag "$bag" --config "$config" --threads "$(nproc)" --out "$demo/run"
 
 step "comparing with the truth"
@@ -44,6 +44,7 @@ cat <<END
   trajectory.png   the path and its height
   error.png        the path against the truth
   error.txt        the table above
-  run/             odometry.tum, timing.csv, covariance.csv, summary.json, config.yaml
+  run/             odometry.tum, trajectory.tum after loop closing, loops.csv, map/, timing.csv,
+                   covariance.csv, summary.json, config.yaml
   recording/       the bag ($(du -sh "$demo/recording" | cut -f1)) and truth.tum; delete it at will
 END
