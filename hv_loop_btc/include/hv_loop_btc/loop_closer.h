@@ -70,7 +70,8 @@ class LoopCloser {
   /// The submaps as bytes, to be stored with the map.
   std::string SerializedSubmaps() const;
 
-  /// Corrected pose between keyframes: the nearest keyframe in time carries the odometry pose.
+  /// Pose in the map of an odometry pose at any time: carried by the keyframes before and after,
+  /// and interpolated between the two.
   Pose Corrected(Time stamp, const Pose& T_odom_imu) const;
 
  private:
