@@ -125,7 +125,7 @@ LoopUpdate LoopCloser::Process(const std::optional<Submap>& submap) {
   update.graph = graph_.Optimize();
   update.optimized = true;
   T_map_odom_ = graph_.pose(last_->id) * last_->T_odom_imu.inverse();
-  MarkRefused(update.candidates);
+  TakeVerdicts(update.candidates);
   return update;
 }
 
@@ -148,7 +148,6 @@ void LoopCloser::AddLoop(const LoopCandidate& loop) {
                                   query.travelled_m - match.travelled_m)) {
     WeighOdometryAnew();
   }
-  travelled_at_loop_m_ = std::max(travelled_at_loop_m_, tracks_.at(loop.query).travelled_m);
 }
 
 void LoopCloser::WeighOdometryAnew() {
@@ -164,10 +163,13 @@ void LoopCloser::WeighOdometryAnew() {
   graph_ = std::move(graph);
 }
 
-void LoopCloser::MarkRefused(std::vector<LoopCandidate>& fresh) {
+void LoopCloser::TakeVerdicts(std::vector<LoopCandidate>& fresh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, bool> judged;
   for (const GraphEdge& edge : graph_.edges()) {
-    if (edge.kind == EdgeKind::kLoop) judged[{edge.from, edge.to}] = edge.accepted;
+    if (edge.kind != EdgeKind::kLoop) continue;
+    judged[{edge.from, edge.to}] = edge.accepted;
+    if (!edge.accepted) continue;
+    travelled_at_loop_m_ = std::max(travelled_at_loop_m_, tracks_.at(edge.to).travelled_m);
   }
   const auto mark = [&](LoopCandidate& candidate) {
     const auto found = judged.find({candidate.match, candidate.query});

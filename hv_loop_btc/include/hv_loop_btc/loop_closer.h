@@ -81,7 +81,7 @@ class LoopCloser {
   std::vector<Eigen::Vector3f> CloudOf(const SubmapRecord& record) const;
   void AddLoop(const LoopCandidate& loop);
   void WeighOdometryAnew();
-  void MarkRefused(std::vector<LoopCandidate>& fresh);
+  void TakeVerdicts(std::vector<LoopCandidate>& fresh);
 
   LoopConfig config_;
   KeyframeStore& store_;
