@@ -38,7 +38,7 @@ struct LoopConfig {
 
 /// What one keyframe led to.
 struct LoopUpdate {
-  std::vector<LoopCandidate> candidates;  ///< all that were looked at; accepted or with a reason
+  std::vector<LoopCandidate> candidates;  ///< all looked at; no reason: accepted, or not decided yet
   bool optimized = false;                 ///< the poses of earlier keyframes have moved
   PoseGraphSummary graph;                 ///< of the last optimisation
   LoopDetector::Timing detection;
