@@ -54,7 +54,7 @@ LoopCloser::LoopCloser(const LoopConfig& config, KeyframeStore& store)
                 [this](const SubmapRecord& record) { return CloudOf(record); }),
       gate_(config_.gate),
       vote_(config_.vote),
-      scale_(config_.odometry),
+      odometry_model_(config_.odometry),
       graph_(config_.graph) {}
 
 LoopUpdate LoopCloser::Add(const Keyframe& keyframe) {
@@ -73,17 +73,21 @@ LoopUpdate LoopCloser::Finish() {
 }
 
 void LoopCloser::AddToGraph(const Keyframe& keyframe) {
-  graph_.AddVertex(keyframe.id, keyframe.stamp, T_map_odom_ * keyframe.T_odom_imu);
-  graph_.AddTilt(keyframe.id, UpInImu(keyframe));
+  odometry_model_.AddKeyframe(keyframe);
   Track track{keyframe.stamp, keyframe.T_odom_imu, UpInImu(keyframe), 0.0, keyframe.segment};
+  std::optional<GraphEdge> edge;
   if (last_) {
     const Pose step = last_->T_odom_imu.inverse() * keyframe.T_odom_imu;
     track.travelled_m = tracks_.at(last_->id).travelled_m + step.translation().norm();
     if (last_->segment == keyframe.segment) {
       odometry_.push_back(OdometryEdge(config_.odometry, *last_, keyframe));
-      graph_.AddEdge(scale_.Scaled(odometry_.back()));
+      edge = odometry_model_.Corrected(odometry_.back());
+      T_map_odom_ = graph_.pose(last_->id) * edge->T_from_to * keyframe.T_odom_imu.inverse();
     }
   }
+  graph_.AddVertex(keyframe.id, keyframe.stamp, T_map_odom_ * keyframe.T_odom_imu);
+  graph_.AddTilt(keyframe.id, track.up_imu);
+  if (edge) graph_.AddEdge(*edge);
   tracks_[keyframe.id] = track;
   last_ = keyframe;
   last_->points = {};
@@ -119,7 +123,7 @@ LoopUpdate LoopCloser::Process(const std::optional<Submap>& submap) {
   const std::vector<LoopCandidate> loops = vote_.Add(
       update.candidates,
       {gate_.LimitsAfter(unheld_m).translation_m, detector_.confirm_score(), prior.T_map_keyframe});
-  for (const LoopCandidate& loop : loops) AddLoop(loop);
+  AddLoops(loops);
   candidates_.insert(candidates_.end(), update.candidates.begin(), update.candidates.end());
   if (loops.empty()) return update;
   update.graph = graph_.Optimize();
@@ -141,13 +145,12 @@ void LoopCloser::AddLoop(const LoopCandidate& loop) {
   weights.tail<3>().setConstant(1.0 / (sigma_rad * sigma_rad));
   edge.information = loop.score() * weights.asDiagonal().toDenseMatrix();
   graph_.AddEdge(edge);
-  const Track& match = tracks_.at(loop.match);
-  const Track& query = tracks_.at(loop.query);
-  const bool connected = match.segment == query.segment;
-  if (connected && scale_.Observe(loop.T_match_query, match.T_odom_imu.inverse() * query.T_odom_imu,
-                                  query.travelled_m - match.travelled_m)) {
-    WeighOdometryAnew();
-  }
+  odometry_model_.AddLoop(loop.match, loop.query, loop.T_match_query);
+}
+
+void LoopCloser::AddLoops(const std::vector<LoopCandidate>& loops) {
+  for (const LoopCandidate& loop : loops) AddLoop(loop);
+  if (!loops.empty() && odometry_model_.Learn()) WeighOdometryAnew();
 }
 
 void LoopCloser::WeighOdometryAnew() {
@@ -156,7 +159,7 @@ void LoopCloser::WeighOdometryAnew() {
     graph.AddVertex(vertex.id, vertex.stamp, vertex.T_map_imu);
     graph.AddTilt(vertex.id, tracks_.at(vertex.id).up_imu);
   }
-  for (const GraphEdge& edge : odometry_) graph.AddEdge(scale_.Scaled(edge));
+  for (const GraphEdge& edge : odometry_) graph.AddEdge(odometry_model_.Corrected(edge));
   for (const GraphEdge& edge : graph_.edges()) {
     if (edge.kind == EdgeKind::kLoop) graph.AddEdge(edge);
   }
@@ -164,17 +167,20 @@ void LoopCloser::WeighOdometryAnew() {
 }
 
 void LoopCloser::TakeVerdicts(std::vector<LoopCandidate>& fresh) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> judged;
+  std::multimap<std::pair<std::uint32_t, std::uint32_t>, const GraphEdge*> judged;
   for (const GraphEdge& edge : graph_.edges()) {
     if (edge.kind != EdgeKind::kLoop) continue;
-    judged[{edge.from, edge.to}] = edge.accepted;
+    judged.emplace(std::make_pair(edge.from, edge.to), &edge);
     if (!edge.accepted) continue;
     travelled_at_loop_m_ = std::max(travelled_at_loop_m_, tracks_.at(edge.to).travelled_m);
   }
   const auto mark = [&](LoopCandidate& candidate) {
-    const auto found = judged.find({candidate.match, candidate.query});
-    if (found == judged.end() || !candidate.reason.empty()) return;
-    candidate.accepted = found->second;
+    if (!candidate.reason.empty()) return;
+    const auto [begin, end] = judged.equal_range({candidate.match, candidate.query});
+    candidate.accepted = std::any_of(begin, end, [&](const auto& entry) {
+      const GraphEdge& edge = *entry.second;
+      return edge.accepted && edge.T_from_to.matrix() == candidate.T_match_query.matrix();
+    });
   };
   for (LoopCandidate& candidate : candidates_) mark(candidate);
   for (LoopCandidate& candidate : fresh) mark(candidate);

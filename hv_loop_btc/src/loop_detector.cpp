@@ -35,8 +35,10 @@ void LoopDetectorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("exclude_m", exclude_m, "way back that is too recent for a loop [m]");
   visitor.Field("min_plane_overlap", min_plane_overlap,
                 "share of planes that must fit before a fine alignment, 0 to 1");
-  visitor.Field("min_score", min_score,
-                "fitness times overlap that a loop needs after the fine alignment, 0 to 1");
+  visitor.Field(
+      "min_score", min_score,
+      "score that a loop needs after the fine alignment: fitness times overlap, less where "
+      "one submap sees through the other, 0 to 1");
 }
 
 void LoopDetectorConfig::Validate(ConfigProblems& problems) const {
@@ -124,11 +126,12 @@ const SubmapRecord& LoopDetector::RecordOf(std::uint32_t keyframe) const {
 }
 
 void LoopDetector::Align(const Submap& submap, LoopCandidate& candidate) const {
-  const RegistrationResult aligned = registration_.Align(clouds_(RecordOf(candidate.match)),
-                                                         submap.points, candidate.T_match_query);
+  const RegistrationResult aligned = registration_.Align(
+      clouds_(RecordOf(candidate.match)), submap.points, submap.up, candidate.T_match_query);
   candidate.T_match_query = aligned.T_target_source;
   candidate.fitness = aligned.fitness;
   candidate.overlap = aligned.overlap;
+  candidate.seen_through = aligned.seen_through;
   if (!aligned.converged) {
     candidate.reason = "fine alignment does not converge";
   } else if (aligned.fitness < min_fitness_ || candidate.score() < config_.min_score) {

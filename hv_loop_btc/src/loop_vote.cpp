@@ -116,7 +116,8 @@ std::vector<LoopCandidate> LoopVote::Add(const std::vector<LoopCandidate>& candi
   Ballot& newest = ballots_.back();
   if (newest.candidates.empty()) return {};
   const Poses& poses = circumstances.poses;
-  const bool sure = circumstances.uncertainty_m <= config_.sure_within_m;
+  const bool sure = circumstances.uncertainty_m <= config_.sure_within_m &&
+                    newest.candidates.front().score() >= circumstances.confirm_score;
   if (!sure || !UniqueNow(newest, poses)) return Count(circumstances);
   newest.decided = true;
   std::vector<LoopCandidate> loops;

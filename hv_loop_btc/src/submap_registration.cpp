@@ -11,6 +11,7 @@
 #include "cube_key.h"
 #include "hv_core/so3.h"
 #include "hv_loop_btc/submap.h"
+#include "view_image.h"
 
 namespace hv::loop {
 namespace {
@@ -19,6 +20,8 @@ constexpr float kFewestPoints = 6.0F;
 /// Least standard deviation of a Gaussian: what scans of the same wall differ by.
 constexpr double kLeastSigma_m = 0.03;
 constexpr double kConverged = 1e-4;
+/// Cosine to the vertical beyond which a plane is floor or ceiling.
+constexpr double kLevel = 0.8;
 
 struct Gaussian {
   Eigen::Vector3d mean;
@@ -119,9 +122,11 @@ NormalEquations Linearize(const GaussianGrid& target, const std::vector<Eigen::V
   return equations;
 }
 
-void Judge(const GaussianGrid& target, const std::vector<Eigen::Vector3d>& source, double inlier_m,
-           RegistrationResult& result) {
+void JudgeFit(const GaussianGrid& target, const std::vector<Eigen::Vector3d>& source,
+              const Eigen::Vector3d& source_up, double inlier_m, RegistrationResult& result) {
+  const Eigen::Vector3d up = result.T_target_source.linear() * source_up;
   std::size_t known = 0;
+  std::size_t upright = 0;
   std::size_t inliers = 0;
   double squares = 0.0;
   for (const Eigen::Vector3d& point : source) {
@@ -129,6 +134,8 @@ void Judge(const GaussianGrid& target, const std::vector<Eigen::Vector3d>& sourc
     const Gaussian* gaussian = target.Nearest(moved);
     if (gaussian == nullptr) continue;
     ++known;
+    if (gaussian->planar && std::abs(gaussian->normal.dot(up)) > kLevel) continue;
+    ++upright;
     const Eigen::Vector3d offset = moved - gaussian->mean;
     const double across = std::abs(offset.dot(gaussian->normal));
     const bool on_plane = gaussian->planar && across < inlier_m;
@@ -139,8 +146,19 @@ void Judge(const GaussianGrid& target, const std::vector<Eigen::Vector3d>& sourc
   }
   if (known == 0 || inliers == 0) return;
   result.overlap = static_cast<double>(known) / static_cast<double>(source.size());
-  result.fitness = static_cast<double>(inliers) / static_cast<double>(known);
+  result.fitness = static_cast<double>(inliers) / static_cast<double>(upright);
   result.rmse_m = std::sqrt(squares / static_cast<double>(inliers));
+}
+
+void JudgeView(const std::vector<Eigen::Vector3f>& target,
+               const std::vector<Eigen::Vector3f>& source, RegistrationResult& result) {
+  const ViewImage::Comparison a = ViewImage(target).Compare(source, result.T_target_source);
+  const ViewImage::Comparison b =
+      ViewImage(source).Compare(target, result.T_target_source.inverse());
+  const std::size_t compared = a.compared + b.compared;
+  if (compared == 0) return;
+  result.seen_through =
+      static_cast<double>(a.seen_through + b.seen_through) / static_cast<double>(compared);
 }
 
 }  // namespace
@@ -168,6 +186,7 @@ void RegistrationConfig::Validate(ConfigProblems& problems) const {
 
 RegistrationResult SubmapRegistration::Align(const std::vector<Eigen::Vector3f>& target,
                                              const std::vector<Eigen::Vector3f>& source,
+                                             const Eigen::Vector3d& source_up,
                                              const Pose& T_target_source_guess) const {
   RegistrationResult result;
   result.T_target_source = T_target_source_guess;
@@ -196,8 +215,9 @@ RegistrationResult SubmapRegistration::Align(const std::vector<Eigen::Vector3f>&
       result.converged = step.norm() < kConverged;
       ++result.iterations;
     }
-    if (&stage == &stages[2]) Judge(grid, points, config_.inlier_m, result);
+    if (&stage == &stages[2]) JudgeFit(grid, points, source_up, config_.inlier_m, result);
   }
+  JudgeView(target, source, result);
   return result;
 }
 

@@ -23,8 +23,8 @@ TEST_P(RegistrationTest, FindsTheRelativePose) {
   const Pose truth = target_pose.inverse() * source_pose;
   const Pose guess =
       truth * MakePose(RotationFromRpy(0.02, -0.02, offset_rad), {offset_m, -offset_m, 0.1});
-  const RegistrationResult result =
-      SubmapRegistration{RegistrationConfig()}.Align(target.points, source.points, guess);
+  const RegistrationResult result = SubmapRegistration{RegistrationConfig()}.Align(
+      target.points, source.points, source.up, guess);
   EXPECT_TRUE(result.converged);
   EXPECT_LT((result.T_target_source.translation() - truth.translation()).norm(), 0.02);
   EXPECT_LT(RotationDistance(result.T_target_source, truth), 0.004);
@@ -38,12 +38,26 @@ INSTANTIATE_TEST_SUITE_P(Guesses, RegistrationTest,
                          ::testing::Values(std::make_tuple(0.0, 0.0), std::make_tuple(0.3, 0.05),
                                            std::make_tuple(-0.4, -0.08)));
 
+TEST(RegistrationTest, AnotherPlaceIsSeenThrough) {
+  std::mt19937 random(2);
+  const Town here(8);
+  const Submap target = here.SubmapAt(0, SensorPose(0.0, 0.0, 0.2), random);
+  const Submap same = here.SubmapAt(1, SensorPose(0.0, 0.0, 0.2), random);
+  const Submap other = Town(9).SubmapAt(2, SensorPose(0.0, 0.0, 0.2), random);
+  const SubmapRegistration registration{RegistrationConfig()};
+  const auto align = [&](const Submap& source) {
+    return registration.Align(target.points, source.points, source.up, Pose::Identity());
+  };
+  EXPECT_LT(align(same).seen_through, 0.002);
+  EXPECT_GT(align(other).seen_through, 0.01);
+}
+
 TEST(RegistrationTest, EmptyCloudsAreTotal) {
   std::mt19937 random(2);
   const Submap place = Town(8).SubmapAt(0, SensorPose(0.0, 0.0, 0.0), random);
   const SubmapRegistration registration{RegistrationConfig()};
-  EXPECT_EQ(registration.Align(place.points, {}, Pose::Identity()).fitness, 0.0);
-  EXPECT_EQ(registration.Align({}, place.points, Pose::Identity()).fitness, 0.0);
+  EXPECT_EQ(registration.Align(place.points, {}, place.up, Pose::Identity()).fitness, 0.0);
+  EXPECT_EQ(registration.Align({}, place.points, place.up, Pose::Identity()).fitness, 0.0);
 }
 
 }  // namespace

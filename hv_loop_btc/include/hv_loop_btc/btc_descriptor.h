@@ -27,7 +27,7 @@ struct BtcScale {
   double vertex_tolerance_m = 0.5;
   double plane_distance_m = 0.25;
   double loop_distance_m = 5.0;
-  double confirm_score = 0.55;
+  double confirm_score = 0.45;
 
   static BtcScale Indoor() { return BtcScale(); }
   static BtcScale Outdoor();

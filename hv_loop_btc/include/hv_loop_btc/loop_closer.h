@@ -13,7 +13,7 @@
 #include "hv_loop_btc/loop_detector.h"
 #include "hv_loop_btc/loop_vote.h"
 #include "hv_loop_btc/odometry_edge.h"
-#include "hv_loop_btc/odometry_scale.h"
+#include "hv_loop_btc/odometry_model.h"
 #include "hv_loop_btc/pose_graph.h"
 
 namespace hv::loop {
@@ -38,9 +38,10 @@ struct LoopConfig {
 
 /// What one keyframe led to.
 struct LoopUpdate {
-  std::vector<LoopCandidate> candidates;  ///< all looked at; no reason: accepted, or not decided yet
-  bool optimized = false;                 ///< the poses of earlier keyframes have moved
-  PoseGraphSummary graph;                 ///< of the last optimisation
+  std::vector<LoopCandidate>
+      candidates;          ///< all looked at; no reason: accepted, or not decided yet
+  bool optimized = false;  ///< the poses of earlier keyframes have moved
+  PoseGraphSummary graph;  ///< of the last optimisation
   LoopDetector::Timing detection;
 };
 
@@ -81,6 +82,7 @@ class LoopCloser {
   std::vector<Eigen::Vector3f> CloudOf(const SubmapRecord& record) const;
   void AddLoop(const LoopCandidate& loop);
   void WeighOdometryAnew();
+  void AddLoops(const std::vector<LoopCandidate>& loops);
   void TakeVerdicts(std::vector<LoopCandidate>& fresh);
 
   LoopConfig config_;
@@ -89,9 +91,9 @@ class LoopCloser {
   LoopDetector detector_;
   LoopGate gate_;
   LoopVote vote_;
-  OdometryScale scale_;
+  OdometryModel odometry_model_;
   PoseGraph graph_;
-  std::vector<GraphEdge> odometry_;  ///< with the noise assumed, not scaled
+  std::vector<GraphEdge> odometry_;  ///< as odometry says, with the noise assumed
   std::vector<LoopCandidate> candidates_;
   /// Of each keyframe: where odometry saw it, and the way until then.
   struct Track {

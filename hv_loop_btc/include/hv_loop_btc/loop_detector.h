@@ -18,7 +18,7 @@ struct LoopDetectorConfig {
   int max_alignments = 8;
   double exclude_m = 15.0;
   double min_plane_overlap = 0.25;
-  double min_score = 0.3;
+  double min_score = 0.15;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

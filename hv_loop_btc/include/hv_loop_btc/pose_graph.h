@@ -21,7 +21,7 @@ struct PoseGraphConfig {
   double inlier_scale = 1.5;
   double odometry_gate_scale = 4.0;
   int loops_to_join_segments = 2;
-  double tilt_sigma_deg = 0.5;
+  double tilt_sigma_deg = 1.0;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

@@ -16,7 +16,7 @@ struct RegistrationConfig {
   double source_leaf_m = 0.4;
   int max_iterations = 30;
   double inlier_m = 0.1;
-  double min_fitness = 0.6;
+  double min_fitness = 0.45;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
@@ -28,10 +28,13 @@ struct RegistrationResult {
   bool converged = false;
   int iterations = 0;
   /// Share of the source points in the part of the target that is known which lie on its surfaces
-  /// (within RegistrationConfig::inlier_m), in [0, 1].
+  /// (within RegistrationConfig::inlier_m), in [0, 1]; floors and ceilings, which fit anywhere, do
+  /// not count.
   double fitness = 0.0;
   double overlap = 0.0;  ///< share of the source points in the part of the target that is known
-  double rmse_m = 0.0;   ///< of the points that lie on surfaces, across these
+  /// Share of the points of either cloud that the other sees through, of those in its view.
+  double seen_through = 0.0;
+  double rmse_m = 0.0;                      ///< of the points that lie on surfaces, across these
   Matrix6d information = Matrix6d::Zero();  ///< of T_target_source, right perturbation, t then r
 };
 
@@ -41,9 +44,11 @@ class SubmapRegistration {
  public:
   explicit SubmapRegistration(const RegistrationConfig& config) : config_(config) {}
 
-  /// Safe to call from several threads.
+  /// Points in the frames of the submaps, whose origins the sensor was at; `source_up` points
+  /// against gravity. Safe to call from several threads.
   RegistrationResult Align(const std::vector<Eigen::Vector3f>& target,
                            const std::vector<Eigen::Vector3f>& source,
+                           const Eigen::Vector3d& source_up,
                            const Pose& T_target_source_guess) const;
 
  private:
