@@ -2,7 +2,8 @@
 
 #include <ros/time.h>
 
-#include "conversions.h"
+#include "hv_ros/conversions.h"
+
 
 namespace hv::lio {
 

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <numeric>
 
-#include <unistd.h>
+#include "hv_core/memory.h"
 
 namespace hv::lio {
 namespace {
@@ -171,13 +170,6 @@ void Health::DescribeResources(Status& status) {
   status.addf("scan time max since start [ms]", "%.2f", largest_scan_ms_);
   status.add("voxels", last_.voxels);
   status.addf("memory [MB]", "%.1f", ResidentMegabytes());
-}
-
-double ResidentMegabytes() {
-  std::ifstream statm("/proc/self/statm");
-  long total = 0, resident = 0;
-  if (!(statm >> total >> resident)) return 0.0;
-  return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
 }
 
 }  // namespace hv::lio

@@ -61,7 +61,4 @@ class Health {
   std::size_t reported_faults_ = 0;
 };
 
-/// Resident memory of this process [MB], 0 when unknown.
-double ResidentMegabytes();
-
 }  // namespace hv::lio

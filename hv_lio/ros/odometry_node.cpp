@@ -5,9 +5,9 @@
 #include <ros/console.h>
 #include <ros/init.h>
 
-#include "conversions.h"
 #include "hv_core/config.h"
 #include "hv_core/error.h"
+#include "hv_ros/conversions.h"
 
 namespace hv::lio {
 namespace {
@@ -163,6 +163,7 @@ bool OdometryNode::Prepare() {
     ROS_INFO_STREAM("pose of " << output.imu_frame << " in " << output.base_frame << ": "
                                << (T_base_imu ? "from tf" : "not in tf, identity is used"));
   }
+  publisher_.SetLidarInImu(parameters_.config.odometry.extrinsic.T_imu_lidar().translation());
   const auto engine = std::make_shared<OdometryEngine>(parameters_.config);
   const std::lock_guard<std::mutex> lock(engine_mutex_);
   engine_ = engine;

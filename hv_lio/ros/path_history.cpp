@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "conversions.h"
+#include "hv_ros/conversions.h"
+
 
 namespace hv::lio {
 namespace {

@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "conversions.h"
+#include "hv_ros/conversions.h"
+
 
 namespace hv::lio {
 namespace {

@@ -75,7 +75,8 @@ LoopUpdate LoopCloser::Finish() {
 void LoopCloser::AddToGraph(const Keyframe& keyframe) {
   graph_.AddVertex(keyframe.id, keyframe.stamp, T_map_odom_ * keyframe.T_odom_imu);
   graph_.AddTilt(keyframe.id, UpInImu(keyframe));
-  Track track{keyframe.stamp, keyframe.T_odom_imu, UpInImu(keyframe), 0.0, keyframe.segment};
+  Track track{keyframe.stamp, keyframe.T_odom_imu, UpInImu(keyframe), session_travelled_m_,
+              keyframe.segment};
   if (last_) {
     const Pose step = last_->T_odom_imu.inverse() * keyframe.T_odom_imu;
     track.travelled_m = tracks_.at(last_->id).travelled_m + step.translation().norm();
@@ -124,7 +125,7 @@ LoopUpdate LoopCloser::Process(const std::optional<Submap>& submap) {
   if (loops.empty()) return update;
   update.graph = graph_.Optimize();
   update.optimized = true;
-  T_map_odom_ = graph_.pose(last_->id) * last_->T_odom_imu.inverse();
+  if (Joined()) T_map_odom_ = graph_.pose(last_->id) * last_->T_odom_imu.inverse();
   TakeVerdicts(update.candidates);
   return update;
 }
@@ -165,10 +166,11 @@ void LoopCloser::WeighOdometryAnew() {
 
 void LoopCloser::TakeVerdicts(std::vector<LoopCandidate>& fresh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, bool> judged;
+  const bool joined = Joined();
   for (const GraphEdge& edge : graph_.edges()) {
     if (edge.kind != EdgeKind::kLoop) continue;
     judged[{edge.from, edge.to}] = edge.accepted;
-    if (!edge.accepted) continue;
+    if (!edge.accepted || !joined) continue;
     travelled_at_loop_m_ = std::max(travelled_at_loop_m_, tracks_.at(edge.to).travelled_m);
   }
   const auto mark = [&](LoopCandidate& candidate) {

@@ -1,0 +1,105 @@
+"""Odometry and loop closing nodes under test, and the maps that they save."""
+import os
+import signal
+import subprocess
+
+import rospy
+
+from recording import (
+    CONFIG, HV_LIO_NODE, HV_LOOP_BTC_NODE, LOOP_RECORDING, POINTS, Collector, Diagnostics, Player,
+    odometry_collector, wait_until)
+from hv_msgs.msg import Keyframe
+
+LOOPS = "loop closing"  # name of the status in the diagnostics
+
+
+def start_node(program, name, *arguments):
+    return subprocess.Popen([program, "__name:=" + name] + list(arguments),
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def interrupt(process, name):
+    """What the node has said, after an interrupt; its parameters are removed."""
+    process.send_signal(signal.SIGINT)
+    output, _ = process.communicate(timeout=15)
+    if rospy.has_param("/" + name):
+        rospy.delete_param("/" + name)
+    assert process.returncode == 0, output
+    return output
+
+
+class Mapping:
+    """A fresh pair of nodes that maps a recording which the test plays."""
+
+    def __init__(self, *arguments):
+        self.diagnostics = Diagnostics()
+        self.odometry = odometry_collector()
+        self.keyframes = Collector("/keyframe", Keyframe)
+        self.player = Player(LOOP_RECORDING)
+        self._lio = start_node(HV_LIO_NODE, "hv_lio", "_config_file:=" + CONFIG)
+        self._loop = start_node(HV_LOOP_BTC_NODE, "hv_loop_btc", "_config_file:=" + CONFIG,
+                                *arguments)
+        assert self.player.wait_for_node()
+        assert wait_until(self.odometry.connected) and wait_until(self.keyframes.connected)
+        assert wait_until(lambda: self.message() and "nobody publishes" not in self.message())
+
+    def message(self):
+        return self.diagnostics.message(LOOPS)
+
+    def count(self, key):
+        return self.diagnostics.count(key, LOOPS)
+
+    def play(self, messages=None):
+        """Plays, and waits until every keyframe has been taken in."""
+        messages = self.player.messages if messages is None else messages
+        sent = sum(topic == POINTS for topic, _ in messages)
+        before = len(self.odometry)
+        self.player.play(messages, lambda: len(self.odometry))
+        assert wait_until(lambda: len(self.odometry) - before > 0.75 * sent), len(self.odometry)
+        self.settle()
+
+    def settle(self):
+        count = -1
+        while count != len(self.odometry):
+            count = len(self.odometry)
+            rospy.rostime.wallsleep(0.5)
+        taken = lambda: self.count("keyframes") - self.count("keyframes of the continued map")
+        assert wait_until(lambda: taken() == len(self.keyframes)), (taken(), len(self.keyframes))
+
+    def is_running(self):
+        return self._loop.poll() is None
+
+    def stop(self):
+        """Interrupts both nodes; returns what loop closing has said."""
+        interrupt(self._lio, "hv_lio")
+        output = interrupt(self._loop, "hv_loop_btc")
+        self.player.close()
+        return output
+
+
+def files_of(folder):
+    """Relative paths of all files."""
+    return sorted(os.path.relpath(os.path.join(base, name), folder)
+                  for base, _, names in os.walk(folder) for name in names)
+
+
+def poses_of(map_folder):
+    """Stamp text -> x y z qx qy qz qw."""
+    with open(os.path.join(map_folder, "poses.tum")) as file:
+        rows = [line.split() for line in file if not line.startswith("#")]
+    return {row[0]: [float(value) for value in row[1:]] for row in rows}
+
+
+def edges_of(map_folder):
+    """(kind, from, to) of every edge; kind is odometry, loop, or rejected."""
+    edges = []
+    kind = ""
+    with open(os.path.join(map_folder, "graph.g2o")) as file:
+        for words in (line.split() for line in file):
+            if words[0] in ("#odometry", "#loop"):
+                kind = words[0][1:]
+            elif words[0] == "EDGE_SE3:QUAT":
+                edges.append((kind, int(words[1]), int(words[2])))
+            elif words[0] == "#rejected":
+                edges.append(("rejected", int(words[2]), int(words[3])))
+    return sorted(edges)
