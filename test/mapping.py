@@ -28,6 +28,25 @@ def interrupt(process, name):
     return output
 
 
+def is_ready(diagnostics):
+    """Whether the loop closing node hears the odometry."""
+    described = diagnostics.value(LOOPS, "keyframes") != ""
+    return described and "nobody publishes" not in diagnostics.message(LOOPS)
+
+
+def settle(odometry, keyframes, diagnostics):
+    """Waits until no more odometry comes and every keyframe has been taken in."""
+    count = -1
+    while count != len(odometry):
+        count = len(odometry)
+        rospy.rostime.wallsleep(1.0)
+
+    def taken():
+        continued = diagnostics.count("keyframes of the continued map", LOOPS)
+        return diagnostics.count("keyframes", LOOPS) - continued
+    assert wait_until(lambda: taken() == len(keyframes)), (taken(), len(keyframes))
+
+
 class Mapping:
     """A fresh pair of nodes that maps a recording which the test plays."""
 
@@ -41,10 +60,7 @@ class Mapping:
                                 *arguments)
         assert self.player.wait_for_node()
         assert wait_until(self.odometry.connected) and wait_until(self.keyframes.connected)
-        assert wait_until(lambda: self.message() and "nobody publishes" not in self.message())
-
-    def message(self):
-        return self.diagnostics.message(LOOPS)
+        assert wait_until(lambda: is_ready(self.diagnostics))
 
     def count(self, key):
         return self.diagnostics.count(key, LOOPS)
@@ -56,15 +72,7 @@ class Mapping:
         before = len(self.odometry)
         self.player.play(messages, lambda: len(self.odometry))
         assert wait_until(lambda: len(self.odometry) - before > 0.75 * sent), len(self.odometry)
-        self.settle()
-
-    def settle(self):
-        count = -1
-        while count != len(self.odometry):
-            count = len(self.odometry)
-            rospy.rostime.wallsleep(0.5)
-        taken = lambda: self.count("keyframes") - self.count("keyframes of the continued map")
-        assert wait_until(lambda: taken() == len(self.keyframes)), (taken(), len(self.keyframes))
+        settle(self.odometry, self.keyframes, self.diagnostics)
 
     def is_running(self):
         return self._loop.poll() is None

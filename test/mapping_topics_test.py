@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """Topics, frames and transforms of mapping.launch."""
+import copy
 import os
 import sys
 import unittest
@@ -13,7 +14,7 @@ from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from mapping import LOOPS  # noqa: E402
+from mapping import LOOPS, is_ready, settle  # noqa: E402
 from recording import (  # noqa: E402
     LOOP_RECORDING, POINTS, Collector, Diagnostics, Player, odometry_collector, wait_until)
 
@@ -38,13 +39,11 @@ class MappingTopics(unittest.TestCase):
         assert cls.player.wait_for_node()
         assert wait_until(lambda: all(topic.connected() for topic in latched)
                           and cls.odometry.connected() and cls.keyframes.connected())
-        message = lambda: cls.diagnostics.message(LOOPS)
-        assert wait_until(lambda: message() and "nobody publishes" not in message())
+        assert wait_until(lambda: is_ready(cls.diagnostics))
         cls.player.play(cls.player.messages, lambda: len(cls.odometry))
         sent = sum(topic == POINTS for topic, _ in cls.player.messages)
         assert wait_until(lambda: len(cls.odometry) > 0.75 * sent)
-        count = lambda key: cls.diagnostics.count(key, LOOPS)
-        assert wait_until(lambda: count("keyframes") == len(cls.keyframes) > 50)
+        settle(cls.odometry, cls.keyframes, cls.diagnostics)
         assert wait_until(lambda: len(cls.path) and len(cls.grid)
                           and len(cls.path.messages[-1].poses) == len(cls.keyframes))
         cls.settle_the_correction()
@@ -54,7 +53,7 @@ class MappingTopics(unittest.TestCase):
         """Odometry that goes on at rest, until the last correction is reached."""
         publisher = rospy.Publisher("/odometry", Odometry, queue_size=10)
         assert wait_until(lambda: publisher.get_num_connections() >= 2)
-        last = cls.odometry.messages[-1]
+        last = copy.deepcopy(cls.odometry.messages[-1])
         for _ in range(2):
             last.header.stamp += rospy.Duration(5)
             publisher.publish(last)

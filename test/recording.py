@@ -127,14 +127,16 @@ class Player:
 
     def play(self, messages, done=None):
         """Publishes `messages`; `done()` counts what the node has answered, and the player keeps
-        at most ten clouds ahead of it."""
+        at most ten clouds ahead of it, beside those that the node leaves unanswered."""
         sent = 0
+        ahead = 10
         answered_before = done() if done else 0
         for topic, message in messages:
             self.send(topic, message)
             sent += topic == POINTS
-            if done and topic == POINTS and sent > 10:
-                self._wait_for_progress(done, answered_before + sent - 10)
+            if done and topic == POINTS and sent > ahead:
+                self._wait_for_progress(done, answered_before + sent - ahead)
+                ahead = max(ahead, sent - (done() - answered_before))
 
     @staticmethod
     def _wait_for_progress(done, wanted):
