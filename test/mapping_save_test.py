@@ -150,15 +150,16 @@ class MappingSave(unittest.TestCase):
         with open(os.path.join(self.map, "graph.g2o")) as file:
             places = {int(words[1]): [float(value) for value in words[2:5]]
                       for words in (line.split() for line in file) if words[0] == "VERTEX_SE3:QUAT"}
+        # An odometry that starts in motion needs some keyframes to settle.
         known = sorted((float(stamp), pose[:3]) for stamp, pose in first.items())
-        for keyframe in keyframes:
+        for keyframe in keyframes[5:]:
             place = places[len(first) + keyframe.id]
             stamp = keyframe.header.stamp.to_sec()
             nearest = min(known, key=lambda other: abs(other[0] - stamp))
             if abs(nearest[0] - stamp) > 0.15:
                 continue
             distance = sum((a - b) ** 2 for a, b in zip(place, nearest[1])) ** 0.5
-            self.assertLess(distance, 0.3, stamp)
+            self.assertLess(distance, 0.1, stamp)
 
 
 if __name__ == "__main__":

@@ -25,7 +25,8 @@ double ResidentMegabytes() {
   long total_pages = 0;
   long resident_pages = 0;
   if (!(statm >> total_pages >> resident_pages)) return 0.0;
-  return static_cast<double>(resident_pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
+  return static_cast<double>(resident_pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) /
+         1048576.0;
 }
 
 }  // namespace hv

@@ -4,7 +4,6 @@
 
 #include "hv_ros/conversions.h"
 
-
 namespace hv::lio {
 
 std::optional<Pose> FrameLookup::Wait(const std::string& parent, const std::string& child,

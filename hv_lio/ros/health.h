@@ -53,7 +53,7 @@ class Health {
   RateMeter cloud_rate_;
   std::string problem_;
   bool any_scan_ = false;
-  ScanResult last_;  // without its points
+  ScanResult last_;             // without its points
   std::deque<double> scan_ms_;  // of the last scans
   double largest_scan_ms_ = 0.0;
   EngineCounters engine_;

@@ -5,7 +5,6 @@
 
 #include "hv_ros/conversions.h"
 
-
 namespace hv::lio {
 
 OdometryEngine::OdometryEngine(const SystemConfig& config)

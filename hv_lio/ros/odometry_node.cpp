@@ -12,8 +12,8 @@
 namespace hv::lio {
 namespace {
 
-constexpr std::size_t kMaxScans = 50;      // 5 s at 10 Hz
-constexpr std::size_t kMaxImu = 20000;     // 50 s at 400 Hz
+constexpr std::size_t kMaxScans = 50;   // 5 s at 10 Hz
+constexpr std::size_t kMaxImu = 20000;  // 50 s at 400 Hz
 constexpr std::uint32_t kCloudQueue = 100;
 constexpr std::uint32_t kImuQueue = 2000;
 constexpr double kWaitForImuFrame = 0.5;   // [s]
@@ -140,10 +140,10 @@ std::optional<Pose> OdometryNode::WaitForExtrinsic(FrameLookup& frames) {
     const std::string lidar_frame = LidarFrame();
     if (const auto pose = frames.Wait(imu_frame, lidar_frame, kWaitForExtrinsic)) return pose;
     if (!stop_) {
-      ROS_WARN_STREAM("waiting for tf from " << imu_frame << " to "
-                                             << (lidar_frame.empty() ? "the frame of the clouds"
-                                                                     : lidar_frame)
-                                             << " (output/extrinsic_from_tf is set)");
+      ROS_WARN_STREAM("waiting for tf from "
+                      << imu_frame << " to "
+                      << (lidar_frame.empty() ? "the frame of the clouds" : lidar_frame)
+                      << " (output/extrinsic_from_tf is set)");
     }
   }
   return std::nullopt;

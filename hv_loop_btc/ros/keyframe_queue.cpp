@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include <boost/make_shared.hpp>
 #include <ros/serialization.h>
+#include <boost/make_shared.hpp>
 
 namespace hv::loop {
 namespace {

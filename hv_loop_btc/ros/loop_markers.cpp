@@ -108,7 +108,8 @@ class MarkerBuilder {
   Marker keyframes_ = MakeMarker("keyframes", Marker::POINTS, 0.12, Color(0.9F, 0.9F, 1.0F));
   Marker odometry_ = MakeMarker("odometry", Marker::LINE_LIST, 0.05, Color(0.4F, 0.6F, 1.0F));
   Marker accepted_ = MakeMarker("loops_accepted", Marker::LINE_LIST, 0.06, Color(0.1F, 0.9F, 0.2F));
-  Marker refused_ = MakeMarker("loops_refused", Marker::LINE_LIST, 0.02, Color(1, 0.2F, 0.2F, 0.6F));
+  Marker refused_ =
+      MakeMarker("loops_refused", Marker::LINE_LIST, 0.02, Color(1, 0.2F, 0.2F, 0.6F));
   Marker undecided_ =
       MakeMarker("loops_undecided", Marker::LINE_LIST, 0.03, Color(0.6F, 0.6F, 0.6F, 0.8F));
 };

@@ -6,8 +6,8 @@ namespace {
 Pose Between(const Pose& from, const Pose& to, double share) {
   const Eigen::Quaterniond rotation =
       Eigen::Quaterniond(from.linear()).slerp(share, Eigen::Quaterniond(to.linear()));
-  return MakePose(rotation, Eigen::Vector3d((1.0 - share) * from.translation() +
-                                            share * to.translation()));
+  return MakePose(rotation,
+                  Eigen::Vector3d((1.0 - share) * from.translation() + share * to.translation()));
 }
 
 }  // namespace

@@ -141,8 +141,8 @@ void MapDisplay::PublishCloud(const LoopView& view) {
 }
 
 void MapDisplay::PublishGrid(const LoopView& view) {
-  const BuiltMap built = MapBuilder(config_.map).Build(
-      view.placed, [this](std::uint32_t id) { return Load(id); });
+  const BuiltMap built =
+      MapBuilder(config_.map).Build(view.placed, [this](std::uint32_t id) { return Load(id); });
   nav_msgs::OccupancyGrid message = ToMessage(built.grid);
   message.header.frame_id = config_.mapping.map_frame;
   message.header.stamp = message.info.map_load_time = NewestStamp(view);

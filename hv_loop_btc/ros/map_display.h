@@ -18,8 +18,8 @@ namespace hv::loop {
 
 /// Publishes what people look at: `map_path`, `loop_markers`, `map_cloud` and the 2-D grid `map`.
 /// Each is latched, made only while somebody listens and only after something has changed, in a
-/// thread of its own that never holds up loop closing. The grid is a whole MapBuilder run: after one
-/// that took t seconds there is none for 4 t.
+/// thread of its own that never holds up loop closing. The grid is a whole MapBuilder run: after
+/// one that took t seconds there is none for 4 t.
 class MapDisplay {
  public:
   /// `engine` must outlive this object.

@@ -46,7 +46,8 @@ SaveOutcome MapSaving::SaveAtExit(double seconds) {
   const SaveOutcome essential =
       Run(map_path_, MapParts::kEssential, [](const char*, double) { return true; });
   if (!essential.success) return essential;
-  // Writing the whole map takes as long again as writing its essential part, and more for the cloud.
+  // Writing the whole map takes as long again as writing its essential part, and more for the
+  // cloud.
   const double build_until = seconds - 2.0 * SecondsSince(start);
   SaveOutcome whole = Run(map_path_, MapParts::kAll, [&](const char* stage, double) {
     return SecondsSince(start) < build_until || std::string(stage) == "writing";

@@ -34,8 +34,8 @@ class MapSaving {
   SaveOutcome Save(const std::string& directory, const Progress& progress = {});
 
   /// Saves to map_path before the process ends, unless all is saved already or nothing is there:
-  /// first what must not be lost, which takes no time; then, while `seconds` are not over, the whole
-  /// map.
+  /// first what must not be lost, which takes no time; then, while `seconds` are not over, the
+  /// whole map.
   SaveOutcome SaveAtExit(double seconds);
 
   /// Ends the save that is under way, if any, and refuses others but SaveAtExit.

@@ -14,8 +14,8 @@ constexpr std::size_t kKeyframesInMemory = 20;
 constexpr std::uint32_t kKeyframeQueue = 1000;
 constexpr std::uint32_t kOdometryQueue = 100;
 // roslaunch kills 15 s after an interrupt.
-constexpr double kTimeToEnd = 13.0;         // [s]
-constexpr double kTimeForKeyframes = 5.0;   // of these, for keyframes that still wait [s]
+constexpr double kTimeToEnd = 13.0;        // [s]
+constexpr double kTimeForKeyframes = 5.0;  // of these, for keyframes that still wait [s]
 
 using Clock = std::chrono::steady_clock;
 
@@ -69,11 +69,9 @@ void MappingNode::Advertise(ros::NodeHandle nh) {
   diagnostics_.setHardwareID("none");
   diagnostics_.add("loop closing", &health_, &MappingHealth::DescribeLoops);
   diagnostics_.add("map", &health_, &MappingHealth::DescribeMap);
-  keyframe_subscriber_ =
-      nh.subscribe("keyframe", kKeyframeQueue, &MappingNode::OnKeyframe, this);
-  odometry_subscriber_ =
-      nh.subscribe("odometry", kOdometryQueue, &MappingNode::OnOdometry, this,
-                   ros::TransportHints().tcpNoDelay());
+  keyframe_subscriber_ = nh.subscribe("keyframe", kKeyframeQueue, &MappingNode::OnKeyframe, this);
+  odometry_subscriber_ = nh.subscribe("odometry", kOdometryQueue, &MappingNode::OnOdometry, this,
+                                      ros::TransportHints().tcpNoDelay());
   timer_ = nh.createWallTimer(ros::WallDuration(1.0), [this](const auto&) { OnTimer(); });
 }
 

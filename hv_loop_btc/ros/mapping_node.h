@@ -53,7 +53,7 @@ class MappingNode {
   TransformPublisher transforms_;
   MapDisplay display_;
   std::atomic<bool> abandon_queue_{false};  ///< while ending: no time for what still waits
-  LoopState reported_;  ///< worker only, after the constructor
+  LoopState reported_;                      ///< worker only, after the constructor
 
   diagnostic_updater::Updater diagnostics_;
   std::optional<SaveServer> save_server_;

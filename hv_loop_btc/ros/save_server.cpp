@@ -29,7 +29,8 @@ SaveServer::SaveServer(ros::NodeHandle private_nh, MapSaving& saving)
     : saving_(saving),
       service_nh_(private_nh),
       spinner_(1, &service_queue_),
-      action_(private_nh, "save_map", [this](const auto& goal) { OnGoal(goal); }, false) {
+      action_(
+          private_nh, "save_map", [this](const auto& goal) { OnGoal(goal); }, false) {
   service_nh_.setCallbackQueue(&service_queue_);
   service_ = service_nh_.advertiseService("save_map", &SaveServer::OnRequest, this);
   spinner_.start();

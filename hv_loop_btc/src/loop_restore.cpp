@@ -72,8 +72,9 @@ bool LoopCloser::Joined() const {
 std::vector<GraphVertex> LoopCloser::PlacedVertices() const {
   std::vector<GraphVertex> placed = graph_.Poses();
   if (Joined()) return placed;
-  const auto first_unplaced = std::find_if(
-      placed.begin(), placed.end(), [this](const auto& vertex) { return vertex.id >= session_start_; });
+  const auto first_unplaced =
+      std::find_if(placed.begin(), placed.end(),
+                   [this](const auto& vertex) { return vertex.id >= session_start_; });
   placed.erase(first_unplaced, placed.end());
   return placed;
 }

@@ -36,7 +36,8 @@ MapSaver::MapSaver(const MapBuilderConfig& config, std::string configuration)
 
 SavedMap MapSaver::Save(const MapSnapshot& snapshot, const KeyframeStore& store,
                         const std::string& path, MapParts parts, const Progress& progress) const {
-  if (snapshot.graph.vertices.empty()) throw InputError("there is no keyframe yet, nothing to save");
+  if (snapshot.graph.vertices.empty())
+    throw InputError("there is no keyframe yet, nothing to save");
   const auto report = [&progress](const char* stage, double share) {
     if (progress) progress(stage, share);
   };

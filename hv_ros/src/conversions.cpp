@@ -27,8 +27,8 @@ void SetFields(sensor_msgs::PointCloud2& cloud) {
 /// 21 bits an axis: distinct within 2^20 voxels of the origin, which no scan exceeds.
 std::uint64_t VoxelKey(const Point& point, float inverse_size) {
   const auto index = [inverse_size](float value) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(
-               std::floor(value * inverse_size))) & 0x1FFFFFU;
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value * inverse_size))) &
+           0x1FFFFFU;
   };
   return index(point.x) << 42U | index(point.y) << 21U | index(point.z);
 }

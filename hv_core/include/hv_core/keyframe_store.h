@@ -41,8 +41,8 @@ class KeyframeStore {
   /// Thins and writes the points of `keyframe`. Throws InputError when its id is already there.
   void Append(const Keyframe& keyframe);
 
-  /// Takes over the cloud of a keyframe of another session by a hard link, or a copy on another file
-  /// system. Throws InputError when its id is already there.
+  /// Takes over the cloud of a keyframe of another session by a hard link, or a copy on another
+  /// file system. Throws InputError when its id is already there.
   void Adopt(std::uint32_t id, const std::string& pcd_path);
 
   /// Points in the IMU frame, with firing intensity. Throws InputError for an unknown id.
@@ -59,7 +59,7 @@ class KeyframeStore {
 
   const std::string folder_;
   const KeyframeStoreConfig config_;
-  mutable std::mutex mutex_;      // guards everything below
+  mutable std::mutex mutex_;  // guards everything below
   Eigen::Vector3f lidar_in_imu_;
   std::set<std::uint32_t> ids_;
 };

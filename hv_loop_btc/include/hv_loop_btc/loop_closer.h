@@ -40,9 +40,10 @@ struct LoopConfig {
 
 /// What one keyframe led to.
 struct LoopUpdate {
-  std::vector<LoopCandidate> candidates;  ///< all looked at; no reason: accepted, or not decided yet
-  bool optimized = false;                 ///< the poses of earlier keyframes have moved
-  PoseGraphSummary graph;                 ///< of the last optimisation
+  std::vector<LoopCandidate>
+      candidates;          ///< all looked at; no reason: accepted, or not decided yet
+  bool optimized = false;  ///< the poses of earlier keyframes have moved
+  PoseGraphSummary graph;  ///< of the last optimisation
   LoopDetector::Timing detection;
 };
 
@@ -61,13 +62,13 @@ class LoopCloser {
   /// candidates that were never confirmed their reason.
   LoopUpdate Finish();
 
-  /// Loads a saved map before the first keyframe and starts a session on top of it. Keyframes of the
-  /// new session need ids above those of the map, and segments from the returned number on. See
+  /// Loads a saved map before the first keyframe and starts a session on top of it. Keyframes of
+  /// the new session need ids above those of the map, and segments from the returned number on. See
   /// ContinueMap. Throws InputError.
   std::uint32_t Restore(const PoseGraphData& data, const StoredSubmaps& submaps);
 
-  /// The odometry starts anew at an unknown place: later keyframes form a session of their own until
-  /// loops join it to the earlier ones. T_map_odom() is the identity meanwhile.
+  /// The odometry starts anew at an unknown place: later keyframes form a session of their own
+  /// until loops join it to the earlier ones. T_map_odom() is the identity meanwhile.
   void StartSession();
 
   /// Whether the newest session has its place in the map: always, where nothing was before.

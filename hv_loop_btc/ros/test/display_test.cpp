@@ -50,7 +50,8 @@ TEST(DisplayCloud, IsBounded) {
 LoopView ExampleView() {
   LoopView view;
   for (std::uint32_t id = 0; id < 5; ++id) view.placed.push_back(VertexAt(id, id));
-  const auto add_edge = [&view](EdgeKind kind, std::uint32_t from, std::uint32_t to, bool accepted) {
+  const auto add_edge = [&view](EdgeKind kind, std::uint32_t from, std::uint32_t to,
+                                bool accepted) {
     GraphEdge edge;
     edge.kind = kind;
     edge.from = from;

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include <boost/make_shared.hpp>
 #include <gtest/gtest.h>
+#include <boost/make_shared.hpp>
 
 namespace hv::loop {
 namespace {

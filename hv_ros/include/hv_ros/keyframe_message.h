@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include <Eigen/Core>
 #include <hv_msgs/Keyframe.h>
+#include <Eigen/Core>
 
 #include "hv_core/keyframe.h"
 
