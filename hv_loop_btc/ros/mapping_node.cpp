@@ -94,8 +94,9 @@ void MappingNode::OnTimer() {
 }
 
 void MappingNode::Run() {
-  while (const hv_msgs::KeyframeConstPtr message = queue_.Pop()) {
-    if (abandon_queue_) break;
+  while (!abandon_queue_) {
+    const hv_msgs::KeyframeConstPtr message = queue_.Pop();
+    if (!message) break;
     engine_.Add(FromMessage(*message));
     ReportChanges(engine_.state());
   }
