@@ -1,4 +1,5 @@
 """Odometry and loop closing nodes under test, and the maps that they save."""
+import atexit
 import os
 import signal
 import subprocess
@@ -14,8 +15,11 @@ LOOPS = "loop closing"  # name of the status in the diagnostics
 
 
 def start_node(program, name, *arguments):
-    return subprocess.Popen([program, "__name:=" + name] + list(arguments),
-                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    """A process that does not outlive the tests, whatever becomes of them."""
+    process = subprocess.Popen([program, "__name:=" + name] + list(arguments),
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    atexit.register(process.kill)
+    return process
 
 
 def interrupt(process, name):
