@@ -18,8 +18,10 @@ from tf2_msgs.msg import TFMessage
 
 _DEVEL = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
 RECORDING = os.path.join(_DEVEL, "share", "hv_bringup", "test", "recording.bag")
+LOOP_RECORDING = os.path.join(_DEVEL, "share", "hv_bringup", "test", "loop", "recording.bag")
 HV_SLAM = os.path.join(_DEVEL, "lib", "hv_replay", "hv_slam")
 HV_LIO_NODE = os.path.join(_DEVEL, "lib", "hv_lio", "hv_lio_node")
+HV_LOOP_BTC_NODE = os.path.join(_DEVEL, "lib", "hv_loop_btc", "hv_loop_btc_node")
 CONFIG = os.path.join(rospkg.RosPack().get_path("hv_bringup"), "..", "config", "robot.yaml")
 
 POINTS = "/points"
@@ -78,8 +80,8 @@ class Diagnostics:
         values = {pair.key: pair.value for pair in status.values} if status else {}
         return values.get(key, "")
 
-    def count(self, key):
-        text = self.value("input", key)
+    def count(self, key, name="input"):
+        text = self.value(name, key)
         return int(text) if text else 0
 
 
@@ -125,14 +127,16 @@ class Player:
 
     def play(self, messages, done=None):
         """Publishes `messages`; `done()` counts what the node has answered, and the player keeps
-        at most ten clouds ahead of it."""
+        at most ten clouds ahead of it, beside those that the node leaves unanswered."""
         sent = 0
+        ahead = 10
         answered_before = done() if done else 0
         for topic, message in messages:
             self.send(topic, message)
             sent += topic == POINTS
-            if done and topic == POINTS and sent > 10:
-                self._wait_for_progress(done, answered_before + sent - 10)
+            if done and topic == POINTS and sent > ahead:
+                self._wait_for_progress(done, answered_before + sent - ahead)
+                ahead = max(ahead, sent - (done() - answered_before))
 
     @staticmethod
     def _wait_for_progress(done, wanted):

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "file_io.h"
 #include "hv_core/error.h"
 #include "hv_core/map_folder.h"
 #include "map_manifest.h"
@@ -47,14 +48,36 @@ void KeyframeStore::RemoveLeftovers() const {
   }
 }
 
+void KeyframeStore::SetLidarInImu(const Eigen::Vector3d& lidar_in_imu) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  lidar_in_imu_ = lidar_in_imu.cast<float>();
+}
+
 void KeyframeStore::Append(const Keyframe& keyframe) {
-  if (Contains(keyframe.id)) {
-    throw InputError("keyframe " + std::to_string(keyframe.id) + " comes a second time");
+  RequireNew(keyframe.id);
+  Eigen::Vector3f lidar_in_imu;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    lidar_in_imu = lidar_in_imu_;
   }
   WritePcd(PathOf(keyframe.id), ThinPoints(keyframe.points, config_.leaf_m),
-           PcdEncoding::kCompressed, lidar_in_imu_);
+           PcdEncoding::kCompressed, lidar_in_imu);
+  Insert(keyframe.id);
+}
+
+void KeyframeStore::Adopt(std::uint32_t id, const std::string& pcd_path) {
+  RequireNew(id);
+  LinkOrCopy(pcd_path, PathOf(id));
+  Insert(id);
+}
+
+void KeyframeStore::RequireNew(std::uint32_t id) const {
+  if (Contains(id)) throw InputError("keyframe " + std::to_string(id) + " comes a second time");
+}
+
+void KeyframeStore::Insert(std::uint32_t id) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  ids_.insert(keyframe.id);
+  ids_.insert(id);
 }
 
 PointCloud KeyframeStore::Load(std::uint32_t id) const {

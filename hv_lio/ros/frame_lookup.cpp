@@ -2,7 +2,7 @@
 
 #include <ros/time.h>
 
-#include "conversions.h"
+#include "hv_ros/conversions.h"
 
 namespace hv::lio {
 

@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <numeric>
 
-#include <unistd.h>
+#include "hv_core/memory.h"
 
 namespace hv::lio {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
 
-constexpr double kRateWindow = 2.0;          // [s]
+constexpr double kRateWindow = 2.0;  // [s]
 constexpr std::size_t kTimedScans = 100;
 
 std::string ToText(const Eigen::Vector3d& v) {
@@ -87,7 +86,8 @@ void Health::Summarize(Status& status) const {
   } else if (!any_scan_) {
     status.summary(DiagnosticStatus::WARN, "no complete scan yet");
   } else if (last_.status != ScanStatus::kTracking) {
-    status.summary(DiagnosticStatus::WARN, std::string(ToString(last_.status)) + ": " + last_.reason);
+    status.summary(DiagnosticStatus::WARN,
+                   std::string(ToString(last_.status)) + ": " + last_.reason);
   } else if (last_.update.degenerate()) {
     status.summary(DiagnosticStatus::WARN, "tracking, some directions are not observed");
   } else {
@@ -118,15 +118,16 @@ void Health::DescribeOdometry(Status& status) {
 std::size_t Health::Faults() const {
   const PipelineCounters& pipeline = engine_.pipeline;
   return engine_.decode.clouds_unusable + pipeline.scans_dropped + pipeline.imu_out_of_order +
-         pipeline.imu_invalid + pipeline.imu_saturated + pipeline.imu_gaps +
-         pipeline.clock_jumps + queue_.scans_dropped + queue_.imu_dropped;
+         pipeline.imu_invalid + pipeline.imu_saturated + pipeline.imu_gaps + pipeline.clock_jumps +
+         queue_.scans_dropped + queue_.imu_dropped;
 }
 
 void Health::DescribeInput(Status& status) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const std::size_t faults = Faults();
   if (faults > reported_faults_) {
-    status.summaryf(DiagnosticStatus::WARN, "%zu new faults in the input", faults - reported_faults_);
+    status.summaryf(DiagnosticStatus::WARN, "%zu new faults in the input",
+                    faults - reported_faults_);
   } else {
     status.summary(DiagnosticStatus::OK, "no new faults");
   }
@@ -171,13 +172,6 @@ void Health::DescribeResources(Status& status) {
   status.addf("scan time max since start [ms]", "%.2f", largest_scan_ms_);
   status.add("voxels", last_.voxels);
   status.addf("memory [MB]", "%.1f", ResidentMegabytes());
-}
-
-double ResidentMegabytes() {
-  std::ifstream statm("/proc/self/statm");
-  long total = 0, resident = 0;
-  if (!(statm >> total >> resident)) return 0.0;
-  return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1048576.0;
 }
 
 }  // namespace hv::lio

@@ -53,15 +53,12 @@ class Health {
   RateMeter cloud_rate_;
   std::string problem_;
   bool any_scan_ = false;
-  ScanResult last_;  // without its points
+  ScanResult last_;             // without its points
   std::deque<double> scan_ms_;  // of the last scans
   double largest_scan_ms_ = 0.0;
   EngineCounters engine_;
   InputQueue::Counters queue_;
   std::size_t reported_faults_ = 0;
 };
-
-/// Resident memory of this process [MB], 0 when unknown.
-double ResidentMegabytes();
 
 }  // namespace hv::lio

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include "conversions.h"
+#include "hv_ros/conversions.h"
 
 namespace hv::lio {
 

@@ -5,15 +5,15 @@
 #include <ros/console.h>
 #include <ros/init.h>
 
-#include "conversions.h"
 #include "hv_core/config.h"
 #include "hv_core/error.h"
+#include "hv_ros/conversions.h"
 
 namespace hv::lio {
 namespace {
 
-constexpr std::size_t kMaxScans = 50;      // 5 s at 10 Hz
-constexpr std::size_t kMaxImu = 20000;     // 50 s at 400 Hz
+constexpr std::size_t kMaxScans = 50;   // 5 s at 10 Hz
+constexpr std::size_t kMaxImu = 20000;  // 50 s at 400 Hz
 constexpr std::uint32_t kCloudQueue = 100;
 constexpr std::uint32_t kImuQueue = 2000;
 constexpr double kWaitForImuFrame = 0.5;   // [s]
@@ -140,10 +140,10 @@ std::optional<Pose> OdometryNode::WaitForExtrinsic(FrameLookup& frames) {
     const std::string lidar_frame = LidarFrame();
     if (const auto pose = frames.Wait(imu_frame, lidar_frame, kWaitForExtrinsic)) return pose;
     if (!stop_) {
-      ROS_WARN_STREAM("waiting for tf from " << imu_frame << " to "
-                                             << (lidar_frame.empty() ? "the frame of the clouds"
-                                                                     : lidar_frame)
-                                             << " (output/extrinsic_from_tf is set)");
+      ROS_WARN_STREAM("waiting for tf from "
+                      << imu_frame << " to "
+                      << (lidar_frame.empty() ? "the frame of the clouds" : lidar_frame)
+                      << " (output/extrinsic_from_tf is set)");
     }
   }
   return std::nullopt;
@@ -163,6 +163,7 @@ bool OdometryNode::Prepare() {
     ROS_INFO_STREAM("pose of " << output.imu_frame << " in " << output.base_frame << ": "
                                << (T_base_imu ? "from tf" : "not in tf, identity is used"));
   }
+  publisher_.SetLidarInImu(parameters_.config.odometry.extrinsic.T_imu_lidar().translation());
   const auto engine = std::make_shared<OdometryEngine>(parameters_.config);
   const std::lock_guard<std::mutex> lock(engine_mutex_);
   engine_ = engine;

@@ -8,6 +8,8 @@
 
 #include "body_estimate.h"
 #include "conversions.h"
+#include "hv_ros/conversions.h"
+#include "hv_ros/keyframe_message.h"
 #include "voxel_markers.h"
 
 namespace hv::lio {
@@ -22,32 +24,6 @@ bool Due(const std::optional<Time>& last, Time now, double period) {
 
 bool HasPose(ScanStatus status) {
   return status == ScanStatus::kTracking || status == ScanStatus::kImuOnly;
-}
-
-std::vector<geometry_msgs::Vector3> ToMessages(const std::vector<Eigen::Vector3d>& vectors) {
-  std::vector<geometry_msgs::Vector3> messages;
-  for (const Eigen::Vector3d& vector : vectors) messages.push_back(ToVectorMessage(vector));
-  return messages;
-}
-
-hv_msgs::KeyframePtr ToMessage(const Keyframe& keyframe, Time scan_start,
-                               const OutputConfig& config) {
-  auto message = boost::make_shared<hv_msgs::Keyframe>();
-  message->header.stamp = ToRos(keyframe.stamp);
-  message->header.frame_id = config.odom_frame;
-  message->child_frame_id = config.imu_frame;
-  message->id = keyframe.id;
-  message->segment = keyframe.segment;
-  message->scan_start = ToRos(scan_start);
-  message->pose.pose = ToPoseMessage(keyframe.T_odom_imu);
-  CopyCovariance(keyframe.covariance, message->pose.covariance);
-  message->gravity = ToVectorMessage(keyframe.gravity_odom);
-  message->degenerate_translation = ToMessages(keyframe.degenerate_translation);
-  message->degenerate_rotation = ToMessages(keyframe.degenerate_rotation);
-  message->cloud = *ToCloudMessage(keyframe.points);
-  message->cloud.header.stamp = message->header.stamp;
-  message->cloud.header.frame_id = config.imu_frame;
-  return message;
 }
 
 }  // namespace
@@ -101,7 +77,9 @@ void OdometryPublisher::PublishCloud(const ScanResult& result) const {
 void OdometryPublisher::PublishKeyframe(const ScanResult& result) {
   const std::optional<Keyframe> keyframe = keyframes_.Add(result);
   if (!keyframe || keyframe_.getNumSubscribers() == 0) return;
-  keyframe_.publish(ToMessage(*keyframe, result.scan_start, config_));
+  const KeyframeHeader header{result.scan_start, config_.odom_frame, config_.imu_frame,
+                              lidar_in_imu_};
+  keyframe_.publish(ToMessage(*keyframe, header));
 }
 
 bool OdometryPublisher::WantsVoxels(Time stamp) const {

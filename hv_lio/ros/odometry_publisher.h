@@ -29,6 +29,9 @@ class OdometryPublisher {
   /// T_base_imu; identity until set. Not to be called while another thread publishes.
   void SetBaseFrame(const Pose& T_base_imu) { T_base_imu_ = T_base_imu; }
 
+  /// Position of the LiDAR in the IMU frame [m], told with keyframes. Likewise.
+  void SetLidarInImu(const Eigen::Vector3d& lidar_in_imu) { lidar_in_imu_ = lidar_in_imu; }
+
   /// Scans without a pose (initialising, dropped) publish nothing.
   void PublishScan(const ScanResult& result);
 
@@ -53,6 +56,7 @@ class OdometryPublisher {
   ros::Publisher keyframe_;
   tf2_ros::TransformBroadcaster transforms_;
   Pose T_base_imu_ = Pose::Identity();
+  Eigen::Vector3d lidar_in_imu_ = Eigen::Vector3d::Zero();
   PathHistory path_;
   std::optional<Time> path_sent_;
   std::optional<Time> voxels_sent_;

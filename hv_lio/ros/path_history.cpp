@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "conversions.h"
+#include "hv_ros/conversions.h"
 
 namespace hv::lio {
 namespace {
@@ -19,8 +19,7 @@ PathHistory::PathHistory(double min_distance, std::size_t max_poses)
 bool PathHistory::Add(Time stamp, const Pose& pose) {
   auto& poses = path_.poses;
   if (!poses.empty() && ToRos(stamp) < poses.back().header.stamp) poses.clear();
-  if (!poses.empty() &&
-      Distance(poses.back().pose.position, pose.translation()) < min_distance_) {
+  if (!poses.empty() && Distance(poses.back().pose.position, pose.translation()) < min_distance_) {
     return false;
   }
   if (poses.size() >= max_poses_) DropEverySecond();

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "conversions.h"
+#include "hv_ros/conversions.h"
 
 namespace hv::lio {
 namespace {
@@ -36,7 +36,8 @@ Triangles MakeSphere() {
   Triangles sphere;
   for (int octant = 0; octant < 8; ++octant) {
     const double x = (octant & 1) ? -1 : 1, y = (octant & 2) ? -1 : 1, z = (octant & 4) ? -1 : 1;
-    sphere.push_back({Eigen::Vector3d(x, 0, 0), Eigen::Vector3d(0, y, 0), Eigen::Vector3d(0, 0, z)});
+    sphere.push_back(
+        {Eigen::Vector3d(x, 0, 0), Eigen::Vector3d(0, y, 0), Eigen::Vector3d(0, 0, z)});
   }
   return sphere;
 }

@@ -51,6 +51,7 @@ void SystemConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("output", output, "what the node publishes");
   visitor.Foreign("loop");
   visitor.Foreign("map");
+  visitor.Foreign("mapping");
 }
 
 void SystemConfig::Validate(ConfigProblems& problems) const {

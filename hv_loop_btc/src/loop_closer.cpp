@@ -74,7 +74,9 @@ LoopUpdate LoopCloser::Finish() {
 
 void LoopCloser::AddToGraph(const Keyframe& keyframe) {
   odometry_model_.AddKeyframe(keyframe);
-  Track track{keyframe.stamp, keyframe.T_odom_imu, UpInImu(keyframe), 0.0, keyframe.segment};
+  Track track{keyframe.stamp, keyframe.T_odom_imu, UpInImu(keyframe), session_travelled_m_,
+              keyframe.segment};
+  Pose T_map_imu = T_map_odom_ * keyframe.T_odom_imu;
   std::optional<GraphEdge> edge;
   if (last_) {
     const Pose step = last_->T_odom_imu.inverse() * keyframe.T_odom_imu;
@@ -82,10 +84,11 @@ void LoopCloser::AddToGraph(const Keyframe& keyframe) {
     if (last_->segment == keyframe.segment) {
       odometry_.push_back(OdometryEdge(config_.odometry, *last_, keyframe));
       edge = odometry_model_.Corrected(odometry_.back());
-      T_map_odom_ = graph_.pose(last_->id) * edge->T_from_to * keyframe.T_odom_imu.inverse();
+      T_map_imu = graph_.pose(last_->id) * edge->T_from_to;
+      if (Joined()) T_map_odom_ = T_map_imu * keyframe.T_odom_imu.inverse();
     }
   }
-  graph_.AddVertex(keyframe.id, keyframe.stamp, T_map_odom_ * keyframe.T_odom_imu);
+  graph_.AddVertex(keyframe.id, keyframe.stamp, T_map_imu);
   graph_.AddTilt(keyframe.id, track.up_imu);
   if (edge) graph_.AddEdge(*edge);
   tracks_[keyframe.id] = track;
@@ -128,7 +131,7 @@ LoopUpdate LoopCloser::Process(const std::optional<Submap>& submap) {
   if (loops.empty()) return update;
   update.graph = graph_.Optimize();
   update.optimized = true;
-  T_map_odom_ = graph_.pose(last_->id) * last_->T_odom_imu.inverse();
+  if (Joined()) T_map_odom_ = graph_.pose(last_->id) * last_->T_odom_imu.inverse();
   TakeVerdicts(update.candidates);
   return update;
 }
@@ -168,10 +171,11 @@ void LoopCloser::WeighOdometryAnew() {
 
 void LoopCloser::TakeVerdicts(std::vector<LoopCandidate>& fresh) {
   std::multimap<std::pair<std::uint32_t, std::uint32_t>, const GraphEdge*> judged;
+  const bool joined = Joined();
   for (const GraphEdge& edge : graph_.edges()) {
     if (edge.kind != EdgeKind::kLoop) continue;
     judged.emplace(std::make_pair(edge.from, edge.to), &edge);
-    if (!edge.accepted) continue;
+    if (!edge.accepted || !joined) continue;
     travelled_at_loop_m_ = std::max(travelled_at_loop_m_, tracks_.at(edge.to).travelled_m);
   }
   const auto mark = [&](LoopCandidate& candidate) {

@@ -68,6 +68,7 @@ void OdometryModel::AddKeyframe(const Keyframe& keyframe) {
 }
 
 void OdometryModel::AddLoop(std::uint32_t from, std::uint32_t to, const Pose& T_from_to) {
+  if (index_.count(from) == 0 || index_.count(to) == 0) return;
   const Loop loop{index_.at(from), index_.at(to), T_from_to};
   if (nodes_[loop.from].segment == nodes_[loop.to].segment) loops_.push_back(loop);
 }
@@ -192,6 +193,7 @@ bool OdometryModel::Learn() {
 }
 
 GraphEdge OdometryModel::Corrected(GraphEdge edge) const {
+  if (index_.count(edge.from) == 0) return edge;
   edge.T_from_to = drift_.Correct(edge.T_from_to, nodes_[index_.at(edge.from)].up_imu);
   Vector6d shrink;
   shrink.head<3>().setConstant(1.0 / translation_scale_);

@@ -1,7 +1,6 @@
 #include "hv_replay/loop_run.h"
 
-#include "hv_core/map_writer.h"
-#include "hv_loop_btc/map_builder.h"
+#include "hv_loop_btc/map_saver.h"
 #include "hv_replay/console.h"
 #include "hv_replay/csv_log.h"
 #include "hv_replay/loop_table.h"
@@ -52,21 +51,10 @@ void LoopRun::WriteLoops() const {
 }
 
 void LoopRun::WriteMap() const {
-  MapWriter writer(out_dir_ + "/map");
-  for (const GraphVertex& vertex : closer_.graph().Poses()) {
-    writer.AddKeyframe(vertex.id, store_.PathOf(vertex.id));
-  }
-  writer.AddGraph(closer_.graph().ToData());
   ProgressLine progress("map");
-  const loop::BuiltMap built =
-      loop::MapBuilder(config_.map)
-          .Build(
-              closer_.graph().Poses(), [this](std::uint32_t id) { return store_.Load(id); },
-              writer.OccupancyPath(), [&progress](double share) { progress.Update(share, ""); });
-  writer.AddCloud(built.cloud);
-  writer.AddGrid(built.grid);
-  writer.AddDescriptors(closer_.SerializedSubmaps());
-  writer.Commit(ToYaml(config_));
+  loop::MapSaver(config_.map, ToYaml(config_))
+      .Save(loop::SnapshotOf(closer_), store_, out_dir_ + "/map", loop::MapParts::kAll,
+            [&progress](const char* stage, double share) { progress.Update(share, stage); });
 }
 
 }  // namespace hv::replay

@@ -6,12 +6,14 @@ void SlamConfig::Describe(ConfigVisitor& visitor) {
   system.Describe(visitor);
   visitor.Section("loop", loop, "loop closing");
   visitor.Section("map", map, "what is made of the keyframes when a map is saved");
+  visitor.Section("mapping", mapping, "what the loop closing node publishes");
 }
 
 void SlamConfig::Validate(ConfigProblems& problems) const {
   system.Validate(problems);
   loop.Validate(problems);
   map.Validate(problems);
+  mapping.Validate(problems);
 }
 
 }  // namespace hv::replay

@@ -5,9 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include <unistd.h>
-
 #include "hv_core/error.h"
+#include "hv_core/memory.h"
 #include "hv_replay/plot.h"
 
 namespace hv::replay {
@@ -56,7 +55,7 @@ std::string TimingRow(const lio::ScanResult& result) {
   char row[200];
   std::snprintf(row, sizeof(row), "%s,%.4f,%.4f,%.4f,%.4f,%zu,%.2f",
                 ToString(result.estimate.stamp).c_str(), timing.preprocess_ms, timing.update_ms,
-                timing.map_ms, timing.total_ms(), result.voxels, ResidentMemoryMb());
+                timing.map_ms, timing.total_ms(), result.voxels, ResidentMegabytes());
   return row;
 }
 
@@ -94,17 +93,6 @@ JsonObject LoopsJson(const LoopRunSummary& summary) {
 }
 
 }  // namespace
-
-double ResidentMemoryMb() {
-  long total_pages = 0;
-  long resident_pages = 0;
-  std::FILE* file = std::fopen("/proc/self/statm", "r");
-  if (file == nullptr) return 0.0;
-  const int read = std::fscanf(file, "%ld %ld", &total_pages, &resident_pages);
-  std::fclose(file);
-  const double page_mb = static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
-  return read == 2 ? page_mb * static_cast<double>(resident_pages) : 0.0;
-}
 
 SlamRun::SlamRun(const SlamConfig& config, const std::vector<std::string>& bags,
                  const std::string& out_dir, const SlamRunOptions& options)
@@ -227,7 +215,7 @@ JsonObject SummaryJson(const SlamRunSummary& summary) {
       .Add("scan_ms", TimesJson(summary.total_ms))
       .Add("input", input)
       .Add("point_time", summary.time_layout)
-      .Add("resident_mb", ResidentMemoryMb())
+      .Add("resident_mb", ResidentMegabytes())
       .Add("error", summary.error);
   return json;
 }

@@ -35,8 +35,15 @@ class KeyframeStore {
   KeyframeStore(const KeyframeStore&) = delete;
   KeyframeStore& operator=(const KeyframeStore&) = delete;
 
+  /// Position of the LiDAR in the IMU frame [m] for keyframes appended from now on.
+  void SetLidarInImu(const Eigen::Vector3d& lidar_in_imu);
+
   /// Thins and writes the points of `keyframe`. Throws InputError when its id is already there.
   void Append(const Keyframe& keyframe);
+
+  /// Takes over the cloud of a keyframe of another session by a hard link, or a copy on another
+  /// file system. Throws InputError when its id is already there.
+  void Adopt(std::uint32_t id, const std::string& pcd_path);
 
   /// Points in the IMU frame, with firing intensity. Throws InputError for an unknown id.
   PointCloud Load(std::uint32_t id) const;
@@ -47,12 +54,14 @@ class KeyframeStore {
 
  private:
   void RemoveLeftovers() const;
+  void RequireNew(std::uint32_t id) const;
+  void Insert(std::uint32_t id);
 
   const std::string folder_;
   const KeyframeStoreConfig config_;
-  const Eigen::Vector3f lidar_in_imu_;
-  mutable std::mutex mutex_;
-  std::set<std::uint32_t> ids_;  ///< guarded by mutex_
+  mutable std::mutex mutex_;  // guards everything below
+  Eigen::Vector3f lidar_in_imu_;
+  std::set<std::uint32_t> ids_;
 };
 
 }  // namespace hv

@@ -7,4 +7,7 @@ namespace hv {
 /// To be called once, first thing in main. Does nothing where the C library has no such setting.
 void KeepFreedMemory();
 
+/// Resident memory of this process [MB]; 0 when unknown.
+double ResidentMegabytes();
+
 }  // namespace hv

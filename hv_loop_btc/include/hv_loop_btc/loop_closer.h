@@ -18,6 +18,8 @@
 
 namespace hv::loop {
 
+struct StoredSubmaps;
+
 /// Everything that loop closing can be told. Section `loop` of the configuration file.
 struct LoopConfig {
   double loop_sigma_m = 0.05;
@@ -59,6 +61,21 @@ class LoopCloser {
   /// At the end of the data: takes the keyframes that are not yet in a submap, and gives the
   /// candidates that were never confirmed their reason.
   LoopUpdate Finish();
+
+  /// Loads a saved map before the first keyframe and starts a session on top of it. Keyframes of
+  /// the new session need ids above those of the map, and segments from the returned number on. See
+  /// ContinueMap. Throws InputError.
+  std::uint32_t Restore(const PoseGraphData& data, const StoredSubmaps& submaps);
+
+  /// The odometry starts anew at an unknown place: later keyframes form a session of their own
+  /// until loops join it to the earlier ones. T_map_odom() is the identity meanwhile.
+  void StartSession();
+
+  /// Whether the newest session has its place in the map: always, where nothing was before.
+  bool Joined() const;
+
+  /// Keyframes whose place in the map is known: all, once the newest session is joined.
+  std::vector<GraphVertex> PlacedVertices() const;
 
   /// Pose of odom in map: carries odometry of the newest segment to the corrected map.
   Pose T_map_odom() const { return T_map_odom_; }
@@ -106,6 +123,8 @@ class LoopCloser {
   std::map<std::uint32_t, Track> tracks_;
   std::optional<Keyframe> last_;  ///< without points
   double travelled_at_loop_m_ = 0.0;
+  std::uint32_t session_start_ = 0;   ///< id from which keyframes belong to the newest session
+  double session_travelled_m_ = 0.0;  ///< way at its start
   Pose T_map_odom_ = Pose::Identity();
 };
 

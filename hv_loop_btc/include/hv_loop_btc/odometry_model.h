@@ -35,13 +35,14 @@ class OdometryModel {
   /// Keyframes in order of time.
   void AddKeyframe(const Keyframe& keyframe);
 
-  /// A loop between keyframes that have been added. Loops between segments tell nothing.
+  /// A loop. Those between segments, or to keyframes of a loaded map, tell nothing.
   void AddLoop(std::uint32_t from, std::uint32_t to, const Pose& T_from_to);
 
   /// Learns from all loops so far. Returns whether the edges are worth weighing anew.
   bool Learn();
 
-  /// The edge from the keyframe `edge.from`, without systematic drift and with its noise scaled.
+  /// The edge without systematic drift and with its noise scaled. An edge from a keyframe that was
+  /// not added, of a loaded map, is as good as it was saved.
   GraphEdge Corrected(GraphEdge edge) const;
 
   const SystematicDrift& drift() const { return drift_; }

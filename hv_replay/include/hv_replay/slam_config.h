@@ -4,15 +4,17 @@
 #include "hv_lio/system_config.h"
 #include "hv_loop_btc/loop_closer.h"
 #include "hv_loop_btc/map_builder.h"
+#include "hv_loop_btc/mapping_config.h"
 
 namespace hv::replay {
 
 /// The whole configuration file: what the odometry node reads (`input`, `points`, `odometry`,
-/// `output`) and what the loop closing node reads (`loop`, `map`).
+/// `output`) and what the loop closing node reads (`loop`, `map`, `mapping`).
 struct SlamConfig {
   lio::SystemConfig system;
   loop::LoopConfig loop;
   loop::MapBuilderConfig map;
+  loop::MappingNodeConfig mapping;  ///< of the node alone, kept so that one file serves all
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

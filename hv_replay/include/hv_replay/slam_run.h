@@ -39,9 +39,6 @@ struct SlamRunOptions {
   std::optional<DriftRates> drift;
 };
 
-/// Resident memory of this process [MB].
-double ResidentMemoryMb();
-
 /// Odometry and loop closing over bags with the cores that the nodes use: bags in, trajectories,
 /// map, timing and pictures out.
 class SlamRun {
