@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "hv_loop_btc/plane_overlap.h"
+#include "hv_loop_btc/submap_file.h"
 
 namespace hv::loop {
 namespace {
@@ -136,6 +137,12 @@ void LoopDetector::Align(const Submap& submap, LoopCandidate& candidate) const {
   } else if (candidate.T_match_query.translation().norm() > loop_distance_m()) {
     candidate.reason = "places are too far apart";
   }
+}
+
+void LoopDetector::Restore(const StoredSubmaps& submaps) {
+  extractor_.SetScale(submaps.scale);
+  records_ = submaps.records;
+  for (const BtcDescriptor& descriptor : submaps.descriptors) database_.Add(descriptor);
 }
 
 std::vector<LoopCandidate> LoopDetector::Detect(const Submap& submap, const LoopPrior& prior) {

@@ -36,6 +36,9 @@ struct LoopConfig {
   void Validate(ConfigProblems& problems) const;
 };
 
+/// The edge of a loop, from match to query: information by the score of the fit (Eq. 10).
+GraphEdge LoopEdge(const LoopConfig& config, const LoopCandidate& loop);
+
 /// What one keyframe led to.
 struct LoopUpdate {
   std::vector<LoopCandidate> candidates;  ///< all looked at; no reason: accepted, or not decided yet

@@ -13,6 +13,8 @@
 
 namespace hv::loop {
 
+struct StoredSubmaps;
+
 struct LoopDetectorConfig {
   int max_entries = 40;
   int max_alignments = 8;
@@ -61,6 +63,9 @@ class LoopDetector {
 
   /// Candidates for `submap`, best first; then stores it.
   std::vector<LoopCandidate> Detect(const Submap& submap, const LoopPrior& prior);
+
+  /// Takes over the submaps of a saved map, before the first submap of its own.
+  void Restore(const StoredSubmaps& submaps);
 
   /// How far two submaps of a loop may be apart [m].
   double loop_distance_m() const { return extractor_.scale().loop_distance_m; }
