@@ -13,7 +13,7 @@ constexpr double kDegrees = 180.0 / M_PI;
 /// Share of the work up to the first optimisation.
 constexpr double kAnywhereShare = 0.8;
 /// Sessions are not joined when more loops than this share of the accepted ones contradict them.
-constexpr double kMostContradiction = 0.5;
+constexpr double kMostContradiction = 0.75;
 /// Floors, walls and ceilings of different buildings fit each other well. What tells places apart
 /// is the pattern of what stands there: true loops have tens of common triangles, false ones fewer
 /// than ten. Median over the loops that join.

@@ -16,6 +16,16 @@ LoopGateConfig GateFor(LoopGateConfig config, SessionSearch::Guess guess) {
   return config;
 }
 
+/// Without a guess every submap has false candidates by the dozen, and aligning them takes nearly
+/// all of the time; the true one is among the first.
+LoopDetectorConfig DetectorFor(LoopDetectorConfig config, SessionSearch::Guess guess) {
+  constexpr int kMostAlignments = 3;
+  if (guess == SessionSearch::Guess::kNone) {
+    config.max_alignments = std::min(config.max_alignments, kMostAlignments);
+  }
+  return config;
+}
+
 }  // namespace
 
 SessionSearch::SessionSearch(const LoopConfig& config, const SavedSession& map,
@@ -23,8 +33,8 @@ SessionSearch::SessionSearch(const LoopConfig& config, const SavedSession& map,
     : config_(config),
       map_(map),
       added_(added),
-      detector_(config.detector, config.btc, config.registration, GateFor(config.gate, guess),
-                [this](const SubmapRecord& record) {
+      detector_(DetectorFor(config.detector, guess), config.btc, config.registration,
+                GateFor(config.gate, guess), [this](const SubmapRecord& record) {
                   return SubmapCloud(
                       record.members, [this](std::uint32_t id) { return PointsOf(id); },
                       config_.submap.leaf_m);

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 /// Enough for a hall.
 MapMergerConfig FastConfig() {
   MapMergerConfig config;
-  config.loop.detector.max_alignments = 4;
+  config.loop.detector.max_alignments = 3;
+  config.loop.registration.max_iterations = 15;
   return config;
 }
 
