@@ -14,10 +14,10 @@ constexpr double kDegrees = 180.0 / M_PI;
 constexpr double kAnywhereShare = 0.8;
 /// Sessions are not joined when more loops than this share of the accepted ones contradict them.
 constexpr double kMostContradiction = 0.75;
-/// Floors, walls and ceilings of different buildings fit each other well. What tells places apart
-/// is the pattern of what stands there: true loops have tens of common triangles, false ones fewer
-/// than ten. Median over the loops that join.
-constexpr int kLeastTriangles = 12;
+/// Floors and walls of different buildings fit each other well. What tells places apart is the
+/// pattern of what stands there: joins that are right have a median of 25 common triangles or
+/// more over their loops, wrong ones of similar halls up to 13.
+constexpr int kLeastTriangles = 20;
 
 template <typename Item>
 void Append(const std::vector<Item>& more, std::vector<Item>& items) {
@@ -55,11 +55,14 @@ SessionJoinResult JoinAttempt::Run() {
   FindAnywhere();
   graph_.Optimize();
   SessionJoinResult result = Outcome();
+  const int triangles = CommonTriangles();
+  result.triangles = triangles;
   result.reason = WhyNot(result);
   if (!result.reason.empty()) return result;
   FindNearby();
   graph_.Optimize();
   result = Outcome();
+  result.triangles = triangles;
   result.joined = true;
   Report(1.0);
   return result;
@@ -174,9 +177,9 @@ std::string JoinAttempt::WhyNot(const SessionJoinResult& result) const {
     return std::to_string(result.loops) + " loops say where it lies, " +
            std::to_string(result.refused) + " say otherwise";
   }
-  if (CommonTriangles() < kLeastTriangles) {
+  if (result.triangles < kLeastTriangles) {
     return "a place like it is there, but what stands in it differs (" +
-           std::to_string(CommonTriangles()) + " common triangles, " +
+           std::to_string(result.triangles) + " common triangles, " +
            std::to_string(kLeastTriangles) + " needed)";
   }
   return "";

@@ -73,6 +73,7 @@ JsonObject ToJson(const hv::loop::MergedMap& merged) {
     json.Add("path", session.path)
         .AddCount("loops", session.join.loops)
         .AddCount("loops_refused", session.join.refused)
+        .AddCount("common_triangles", session.join.triangles)
         .Add("residual_m", session.join.residual_m)
         .Add("residual_deg", session.join.residual_deg);
     sessions.push_back(json);
@@ -88,9 +89,11 @@ JsonObject ToJson(const hv::loop::MergedMap& merged) {
 
 void Print(const hv::loop::MergedMap& merged) {
   for (const hv::loop::MergedSession& session : merged.sessions) {
-    std::printf("joined       %s by %zu loops (%zu refused), residual %.1f cm and %.2f deg\n",
-                session.path.c_str(), session.join.loops, session.join.refused,
-                100.0 * session.join.residual_m, session.join.residual_deg);
+    std::printf(
+        "joined       %s by %zu loops (%zu refused; %d common triangles), residual %.1f cm and "
+        "%.2f deg\n",
+        session.path.c_str(), session.join.loops, session.join.refused, session.join.triangles,
+        100.0 * session.join.residual_m, session.join.residual_deg);
   }
   std::printf("map          %s: %zu keyframes, %zu points\n", merged.path.c_str(), merged.keyframes,
               merged.points);

@@ -15,6 +15,7 @@ struct SessionJoinResult {
   std::string reason;       ///< why not joined, one line
   std::size_t loops = 0;    ///< between the sessions, accepted
   std::size_t refused = 0;  ///< between the sessions, contradicted by the others
+  int triangles = 0;        ///< in common, median over the accepted loops of the first search
   double residual_m = 0.0;  ///< of the accepted loops after optimisation, root mean square
   double residual_deg = 0.0;
 };
