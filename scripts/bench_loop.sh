@@ -20,6 +20,11 @@ usage() {
 usage: bench_loop.sh [options]
   --data DIR       recordings, generated where missing (default: build/bench/loop_data; 18 GB)
   --out DIR        results (default: build/bench/loop_results)
+  --peer NAME DIR  places that another program found, DIR/<sequence>.csv; may be repeated. Columns:
+                   query_stamp,match_stamp,score,accepted,x,y,z,qx,qy,qz,qw,extract_ms,query_ms
+                   One row a submap (stamps [s] of its keyframe and of the match's) with the best
+                   match, however bad: pose of the query in the frame of the match [m], accepted 1
+                   where the program reports a loop by its defaults; empty where there is no match
   --only NAME      this sequence only; may be repeated
   --table-only     no runs: the table of the results that are there
   --markdown FILE  also write the table to FILE
@@ -42,11 +47,13 @@ while (($# > 0)); do
   case $1 in
     -h | --help) usage; exit 0 ;;
     --table-only) needs=0 ;;
+    --peer) needs=2 ;;
   esac
-  (($# > needs)) || fail "$1 needs an argument (--help lists the options)"
+  (($# > needs)) || fail "$1 needs $needs argument(s) (--help lists the options)"
   case $1 in
     --data) data=$2 ;;
     --out) out=$2 ;;
+    --peer) table+=(--peer "$2" "$3") ;;
     --only) only+=("$2") ;;
     --table-only) run= ;;
     --markdown) table+=(--markdown "$2") ;;

@@ -46,6 +46,20 @@ void LoopConfig::Validate(ConfigProblems& problems) const {
   store.Validate(problems);
 }
 
+GraphEdge LoopEdge(const LoopConfig& config, const LoopCandidate& loop) {
+  GraphEdge edge;
+  edge.kind = EdgeKind::kLoop;
+  edge.from = loop.match;
+  edge.to = loop.query;
+  edge.T_from_to = loop.T_match_query;
+  const double sigma_rad = config.loop_sigma_deg * M_PI / 180.0;
+  Vector6d weights;
+  weights.head<3>().setConstant(1.0 / (config.loop_sigma_m * config.loop_sigma_m));
+  weights.tail<3>().setConstant(1.0 / (sigma_rad * sigma_rad));
+  edge.information = loop.score() * weights.asDiagonal().toDenseMatrix();
+  return edge;
+}
+
 LoopCloser::LoopCloser(const LoopConfig& config, KeyframeStore& store)
     : config_(Checked(config)),
       store_(store),
@@ -106,14 +120,8 @@ LoopPrior LoopCloser::Prior(const Submap& submap) const {
 }
 
 std::vector<Eigen::Vector3f> LoopCloser::CloudOf(const SubmapRecord& record) const {
-  std::vector<Eigen::Vector3f> all;
-  for (const SubmapMember& member : record.members) {
-    const Eigen::Isometry3f transform = member.T_submap_keyframe.cast<float>();
-    for (const Point& point : store_.Load(member.keyframe).points) {
-      all.push_back(transform * Eigen::Vector3f(point.x, point.y, point.z));
-    }
-  }
-  return Thinned(all, config_.submap.leaf_m);
+  const auto load = [this](std::uint32_t id) { return store_.Load(id).points; };
+  return SubmapCloud(record.members, load, config_.submap.leaf_m);
 }
 
 LoopUpdate LoopCloser::Process(const std::optional<Submap>& submap) {
@@ -137,17 +145,7 @@ LoopUpdate LoopCloser::Process(const std::optional<Submap>& submap) {
 }
 
 void LoopCloser::AddLoop(const LoopCandidate& loop) {
-  GraphEdge edge;
-  edge.kind = EdgeKind::kLoop;
-  edge.from = loop.match;
-  edge.to = loop.query;
-  edge.T_from_to = loop.T_match_query;
-  const double sigma_rad = config_.loop_sigma_deg * M_PI / 180.0;
-  Vector6d weights;
-  weights.head<3>().setConstant(1.0 / (config_.loop_sigma_m * config_.loop_sigma_m));
-  weights.tail<3>().setConstant(1.0 / (sigma_rad * sigma_rad));
-  edge.information = loop.score() * weights.asDiagonal().toDenseMatrix();
-  graph_.AddEdge(edge);
+  graph_.AddEdge(LoopEdge(config_, loop));
   odometry_model_.AddLoop(loop.match, loop.query, loop.T_match_query);
 }
 

@@ -44,6 +44,19 @@ std::vector<Eigen::Vector3f> Thinned(const std::vector<Eigen::Vector3f>& points,
   return thinned;
 }
 
+std::vector<Eigen::Vector3f> SubmapCloud(
+    const std::vector<SubmapMember>& members,
+    const std::function<std::vector<Point>(std::uint32_t)>& load, double leaf_m) {
+  std::vector<Eigen::Vector3f> all;
+  for (const SubmapMember& member : members) {
+    const Eigen::Isometry3f transform = member.T_submap_keyframe.cast<float>();
+    for (const Point& point : load(member.keyframe)) {
+      all.push_back(transform * Eigen::Vector3f(point.x, point.y, point.z));
+    }
+  }
+  return Thinned(all, leaf_m);
+}
+
 std::optional<Submap> SubmapBuilder::Add(Keyframe keyframe) {
   std::optional<Submap> finished;
   if (!window_.empty() && window_.back().segment != keyframe.segment) finished = Finish();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -20,13 +21,27 @@ void ReportCloud(const MapFolder& map, MapReport& report) {
   }
 }
 
+/// Along odometry: sessions of a joined map may have run at the same time.
+double PathLength(const PoseGraphData& graph) {
+  std::map<std::uint32_t, Eigen::Vector3d> positions;
+  for (const GraphVertex& vertex : graph.vertices) {
+    positions[vertex.id] = vertex.T_map_imu.translation();
+  }
+  double length = 0.0;
+  for (const GraphEdge& edge : graph.edges) {
+    if (edge.kind != EdgeKind::kOdometry) continue;
+    length += (positions.at(edge.to) - positions.at(edge.from)).norm();
+  }
+  return length;
+}
+
 void ReportGraph(const MapFolder& map, MapReport& report) {
   const PoseGraphData graph = map.ReadGraph();
   for (const GraphEdge& edge : graph.edges) {
     report.loops_rejected += edge.kind == EdgeKind::kLoop && !edge.accepted ? 1 : 0;
   }
+  report.path_length_m = PathLength(graph);
   const Trajectory poses = map.ReadPoses();
-  report.path_length_m = poses.PathLength();
   if (!poses.empty()) {
     report.duration_s = poses.poses().back().stamp - poses.poses().front().stamp;
   }

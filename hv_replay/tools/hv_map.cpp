@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -8,6 +9,7 @@
 #include "hv_core/map_folder.h"
 #include "hv_replay/console.h"
 #include "hv_replay/map_report.h"
+#include "map_merge.h"
 #include "tool.h"
 
 namespace {
@@ -99,7 +101,7 @@ int Export(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Looks into saved maps, checks and exports them.", "hv_map");
+  CLI::App app("Looks into saved maps, checks, exports and joins them.", "hv_map");
   app.require_subcommand(1);
   Arguments arguments;
   const CLI::App* info = AddCommand(app, "info", "what a map holds", arguments);
@@ -107,7 +109,9 @@ int main(int argc, char** argv) {
       AddCommand(app, "verify", "read every file and compare all checksums", arguments);
   DeclareExport(*AddCommand(app, "export", "write parts of a map for other programs", arguments),
                 arguments);
+  const std::function<int()> merge = AddMergeCommand(app);
   return hv::replay::RunTool(app, argc, argv, [&] {
+    if (app.got_subcommand("merge")) return merge();
     if (info->parsed()) return Info(arguments);
     return verify->parsed() ? Verify(arguments) : Export(arguments);
   });

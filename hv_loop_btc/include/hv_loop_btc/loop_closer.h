@@ -38,6 +38,9 @@ struct LoopConfig {
   void Validate(ConfigProblems& problems) const;
 };
 
+/// The edge of a loop, from match to query: information by the score of the fit (Eq. 10).
+GraphEdge LoopEdge(const LoopConfig& config, const LoopCandidate& loop);
+
 /// What one keyframe led to.
 struct LoopUpdate {
   std::vector<LoopCandidate>

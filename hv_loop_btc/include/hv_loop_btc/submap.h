@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -40,6 +41,12 @@ struct Submap {
 
 /// Points thinned to one (the mean) a cube of `leaf` metres, in order of first appearance.
 std::vector<Eigen::Vector3f> Thinned(const std::vector<Eigen::Vector3f>& points, double leaf);
+
+/// The cloud of a submap from stored keyframes (`load`: points of a keyframe in its frame),
+/// thinned, submap frame.
+std::vector<Eigen::Vector3f> SubmapCloud(
+    const std::vector<SubmapMember>& members,
+    const std::function<std::vector<Point>(std::uint32_t)>& load, double leaf_m);
 
 /// Collects keyframes into overlapping submaps. Not thread-safe.
 class SubmapBuilder {
