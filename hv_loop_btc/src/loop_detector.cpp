@@ -61,6 +61,7 @@ LoopDetector::LoopDetector(const LoopDetectorConfig& config, const BtcConfig& bt
       database_(btc),
       registration_(registration),
       min_fitness_(registration.min_fitness),
+      max_seen_through_(registration.max_seen_through),
       clouds_(std::move(clouds)) {}
 
 DriftLimits LoopDetector::LimitsFor(const SubmapRecord& record, const LoopPrior& prior) const {
@@ -133,7 +134,9 @@ void LoopDetector::Align(const Submap& submap, LoopCandidate& candidate) const {
   candidate.fitness = aligned.fitness;
   candidate.overlap = aligned.overlap;
   candidate.seen_through = aligned.seen_through;
-  if (!aligned.converged) {
+  if (aligned.seen_through > max_seen_through_) {
+    candidate.reason = "one submap sees through the other";
+  } else if (!aligned.converged) {
     candidate.reason = "fine alignment does not converge";
   } else if (aligned.fitness < min_fitness_ || candidate.score() < config_.min_score) {
     candidate.reason = "submaps do not fit";

@@ -20,6 +20,7 @@ constexpr float kFewestPoints = 6.0F;
 /// Least standard deviation of a Gaussian: what scans of the same wall differ by.
 constexpr double kLeastSigma_m = 0.03;
 constexpr double kConverged = 1e-4;
+constexpr double kConvergedCoarse = 1e-3;
 /// Cosine to the vertical beyond which a plane is floor or ceiling.
 constexpr double kLevel = 0.8;
 
@@ -150,15 +151,14 @@ void JudgeFit(const GaussianGrid& target, const std::vector<Eigen::Vector3d>& so
   result.rmse_m = std::sqrt(squares / static_cast<double>(inliers));
 }
 
-void JudgeView(const std::vector<Eigen::Vector3f>& target,
-               const std::vector<Eigen::Vector3f>& source, RegistrationResult& result) {
-  const ViewImage::Comparison a = ViewImage(target).Compare(source, result.T_target_source);
-  const ViewImage::Comparison b =
-      ViewImage(source).Compare(target, result.T_target_source.inverse());
+/// Share of the points of either cloud that the other sees through.
+double SeenThrough(const std::vector<Eigen::Vector3f>& target,
+                   const std::vector<Eigen::Vector3f>& source, const Pose& T_target_source) {
+  const ViewImage::Comparison a = ViewImage(target).Compare(source, T_target_source);
+  const ViewImage::Comparison b = ViewImage(source).Compare(target, T_target_source.inverse());
   const std::size_t compared = a.compared + b.compared;
-  if (compared == 0) return;
-  result.seen_through =
-      static_cast<double>(a.seen_through + b.seen_through) / static_cast<double>(compared);
+  if (compared == 0) return 0.0;
+  return static_cast<double>(a.seen_through + b.seen_through) / static_cast<double>(compared);
 }
 
 }  // namespace
@@ -171,6 +171,9 @@ void RegistrationConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("inlier_m", inlier_m, "distance from a surface at which a point lies on it [m]");
   visitor.Field("min_fitness", min_fitness,
                 "share of the points that must lie on known surfaces, 0 to 1");
+  visitor.Field("max_seen_through", max_seen_through,
+                "share of points that the other submap sees through beyond which an alignment is "
+                "given up, 0 to 1");
 }
 
 void RegistrationConfig::Validate(ConfigProblems& problems) const {
@@ -182,6 +185,8 @@ void RegistrationConfig::Validate(ConfigProblems& problems) const {
   problems.Require(inlier_m > 0.0, "registration.inlier_m", "must be positive");
   problems.Require(min_fitness >= 0.0 && min_fitness <= 1.0, "registration.min_fitness",
                    "must lie between 0 and 1");
+  problems.Require(max_seen_through > 0.0 && max_seen_through <= 1.0,
+                   "registration.max_seen_through", "must lie between 0 and 1");
 }
 
 RegistrationResult SubmapRegistration::Align(const std::vector<Eigen::Vector3f>& target,
@@ -198,10 +203,11 @@ RegistrationResult SubmapRegistration::Align(const std::vector<Eigen::Vector3f>&
   struct Stage {
     double voxel_m;
     double robust_sigmas;
+    double converged;
   };
-  const Stage stages[] = {{2.0 * config_.coarse_voxel_m, 6.0},
-                          {config_.coarse_voxel_m, 4.0},
-                          {config_.fine_voxel_m, 3.0}};
+  const Stage stages[] = {{2.0 * config_.coarse_voxel_m, 6.0, kConvergedCoarse},
+                          {config_.coarse_voxel_m, 4.0, kConvergedCoarse},
+                          {config_.fine_voxel_m, 3.0, kConverged}};
   for (const Stage& stage : stages) {
     const GaussianGrid grid(target, stage.voxel_m);
     result.converged = false;
@@ -212,12 +218,13 @@ RegistrationResult SubmapRegistration::Align(const std::vector<Eigen::Vector3f>&
       const Vector6d step = -damped.ldlt().solve(equations.gradient);
       result.T_target_source = result.T_target_source * se3::Exp(step);
       result.information = equations.information;
-      result.converged = step.norm() < kConverged;
+      result.converged = step.norm() < stage.converged;
       ++result.iterations;
     }
+    result.seen_through = SeenThrough(target, source, result.T_target_source);
+    if (result.seen_through > config_.max_seen_through) return result;
     if (&stage == &stages[2]) JudgeFit(grid, points, source_up, config_.inlier_m, result);
   }
-  JudgeView(target, source, result);
   return result;
 }
 

@@ -91,6 +91,7 @@ class LoopDetector {
   BtcDatabase database_;
   SubmapRegistration registration_;
   double min_fitness_;
+  double max_seen_through_;
   CloudSource clouds_;
   std::vector<SubmapRecord> records_;  ///< one an entry of the database
   Timing timing_;

@@ -17,6 +17,7 @@ struct RegistrationConfig {
   int max_iterations = 30;
   double inlier_m = 0.1;
   double min_fitness = 0.45;
+  double max_seen_through = 0.04;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
@@ -33,6 +34,7 @@ struct RegistrationResult {
   double fitness = 0.0;
   double overlap = 0.0;  ///< share of the source points in the part of the target that is known
   /// Share of the points of either cloud that the other sees through, of those in its view.
+  /// Beyond RegistrationConfig::max_seen_through the alignment is given up and nothing else filled.
   double seen_through = 0.0;
   double rmse_m = 0.0;                      ///< of the points that lie on surfaces, across these
   Matrix6d information = Matrix6d::Zero();  ///< of T_target_source, right perturbation, t then r
