@@ -103,7 +103,7 @@ void JoinAttempt::Vote(const SubmapRecord& record, SessionSearch& search, LoopVo
                   ? 1
                   : 0;
   for (const LoopCandidate& loop :
-       vote.Add(candidates, {uncertainty_m, search.confirm_score(), poses})) {
+       vote.Add(candidates, {uncertainty_m, 0.0, search.confirm_score(), poses})) {
     graph_.AddEdge(LoopEdge(config_, loop));
     triangles_.push_back(loop.inliers);
   }

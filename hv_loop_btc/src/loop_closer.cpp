@@ -131,9 +131,10 @@ LoopUpdate LoopCloser::Process(const std::optional<Submap>& submap) {
   update.candidates = detector_.Detect(*submap, prior);
   update.detection = detector_.timing();
   const double unheld_m = std::max(0.0, prior.travelled_m - prior.travelled_at_loop_m);
-  const std::vector<LoopCandidate> loops = vote_.Add(
-      update.candidates,
-      {gate_.LimitsAfter(unheld_m).translation_m, detector_.confirm_score(), prior.T_map_keyframe});
+  const std::vector<LoopCandidate> loops =
+      vote_.Add(update.candidates,
+                {gate_.LimitsAfter(unheld_m).translation_m, odometry_model_.ExpectedError(unheld_m),
+                 detector_.confirm_score(), prior.T_map_keyframe});
   AddLoops(loops);
   candidates_.insert(candidates_.end(), update.candidates.begin(), update.candidates.end());
   if (loops.empty()) return update;

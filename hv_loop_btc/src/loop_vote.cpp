@@ -65,6 +65,14 @@ LoopVote::Support LoopVote::SupportOf(const LoopCandidate& candidate, const Pose
   return support;
 }
 
+bool LoopVote::IsExpected(const LoopCandidate& candidate,
+                          const Circumstances& circumstances) const {
+  const Pose expected = circumstances.poses(candidate.query);
+  const Pose place = Place(candidate, circumstances.poses);
+  return (place.translation() - expected.translation()).norm() < circumstances.expected_m &&
+         RotationDistance(place, expected) < config_.agree_deg * kRadians;
+}
+
 bool LoopVote::UniqueNow(const Ballot& ballot, const Poses& poses) const {
   const auto& all = ballot.candidates;
   return std::all_of(all.begin(), all.end(), [&](const LoopCandidate& candidate) {
@@ -116,11 +124,16 @@ std::vector<LoopCandidate> LoopVote::Add(const std::vector<LoopCandidate>& candi
   Ballot& newest = ballots_.back();
   if (newest.candidates.empty()) return {};
   const Poses& poses = circumstances.poses;
+  std::vector<LoopCandidate> loops;
+  for (const LoopCandidate& candidate : newest.candidates) {
+    if (IsExpected(candidate, circumstances)) loops.push_back(candidate);
+  }
+  newest.decided = !loops.empty();
+  if (newest.decided) return loops;
   const bool sure = circumstances.uncertainty_m <= config_.sure_within_m &&
                     newest.candidates.front().score() >= circumstances.confirm_score;
   if (!sure || !UniqueNow(newest, poses)) return Count(circumstances);
   newest.decided = true;
-  std::vector<LoopCandidate> loops;
   for (const LoopCandidate& candidate : newest.candidates) {
     if (Agree(newest.candidates.front(), candidate, poses)) loops.push_back(candidate);
   }

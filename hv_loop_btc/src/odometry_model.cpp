@@ -28,6 +28,10 @@ constexpr double kNewScale = 1.3;
 constexpr double kQuantile = 0.7;
 /// Loops cannot show that odometry is better than this share of what is assumed.
 constexpr double kLeastScale = 0.05;
+/// Bounds of the error of odometry that is expected: loops that differ less are the same, and
+/// beyond the most, other places may look alike [m].
+constexpr double kLeastExpected_m = 0.15;
+constexpr double kMostExpected_m = 0.5;
 /// Errors of the loops themselves [m, rad].
 constexpr double kLoopError_m = 0.02;
 constexpr double kLoopError_rad = 0.003;
@@ -190,6 +194,15 @@ bool OdometryModel::Learn() {
   }
   const bool noise_changed = MeasureNoise();
   return drift_changed || noise_changed;
+}
+
+double OdometryModel::ExpectedError(double way_m) const {
+  if (loops_.size() < kFewestLoops) return 0.0;
+  const double root = std::sqrt(way_m);
+  const double turn = rotation_scale_ * config_.rotation_drift_deg * kRadians * root;
+  const double move = translation_scale_ * config_.translation_drift_m * root;
+  const double expected = kLeastExpected_m + 3.0 * (move + kLever * way_m * turn);
+  return expected < kMostExpected_m ? expected : 0.0;
 }
 
 GraphEdge OdometryModel::Corrected(GraphEdge edge) const {

@@ -19,8 +19,8 @@ LoopCandidate Asks(std::uint32_t query, double shift, double score) {
   return candidate;
 }
 
-LoopVote::Circumstances Circumstances(double uncertainty_m) {
-  return {uncertainty_m, 0.5, Believed};
+LoopVote::Circumstances Circumstances(double uncertainty_m, double expected_m = 0.0) {
+  return {uncertainty_m, expected_m, 0.5, Believed};
 }
 
 TEST(LoopVoteTest, WhereOdometryIsCertainOneGoodCandidateIsEnough) {
@@ -72,6 +72,14 @@ TEST(LoopVoteTest, PoorAlignmentsDoNotConfirmEachOther) {
   for (std::uint32_t i = 0; i < 12; ++i) {
     EXPECT_TRUE(vote.Add({Asks(200 + 3 * i, 5.0, 0.4)}, Circumstances(20.0)).empty());
   }
+}
+
+TEST(LoopVoteTest, ThePlaceThatOdometryLeadsToIsTakenAtOnceEvenWithALowScore) {
+  LoopVote vote{LoopVoteConfig()};
+  EXPECT_TRUE(vote.Add({Asks(200, 0.1, 0.2)}, Circumstances(20.0)).empty());
+  EXPECT_TRUE(vote.Add({Asks(203, 0.6, 0.2)}, Circumstances(20.0, 0.3)).empty());
+  EXPECT_EQ(vote.Add({Asks(206, 6.0, 0.4), Asks(206, 0.1, 0.2)}, Circumstances(20.0, 0.3)).size(),
+            1U);
 }
 
 TEST(LoopVoteTest, CandidatesWithAReasonHaveNoVote) {

@@ -26,7 +26,8 @@ struct LoopVoteConfig {
 /// alignment is not enough while odometry allows several. Every candidate says how the map has to
 /// move for its place to fit; those of consecutive submaps that ask for the same movement support
 /// each other, and the movement that is best supported, by a margin over every other, wins.
-/// Where odometry is certain enough to leave one place only, that place is taken at once.
+/// Where odometry is certain enough to leave one place only, that place is taken at once, and so is
+/// the place that odometry leads to, once loops have shown how good odometry is.
 /// Not thread-safe.
 class LoopVote {
  public:
@@ -36,6 +37,7 @@ class LoopVote {
   /// What the candidates are judged by.
   struct Circumstances {
     double uncertainty_m = 0.0;  ///< how far odometry may be off
+    double expected_m = 0.0;     ///< how far loops have shown it to be off, at most; 0: unknown
     double confirm_score = 0.0;  ///< mean score that loops need while it is uncertain
     Poses poses;
   };
@@ -64,6 +66,7 @@ class LoopVote {
 
   bool Agree(const LoopCandidate& a, const LoopCandidate& b, const Poses& poses) const;
   Support SupportOf(const LoopCandidate& candidate, const Poses& poses) const;
+  bool IsExpected(const LoopCandidate& candidate, const Circumstances& circumstances) const;
   bool UniqueNow(const Ballot& ballot, const Poses& poses) const;
   std::vector<LoopCandidate> Count(const Circumstances& circumstances);
 

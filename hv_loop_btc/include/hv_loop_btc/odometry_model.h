@@ -45,6 +45,10 @@ class OdometryModel {
   /// not added, of a loaded map, is as good as it was saved.
   GraphEdge Corrected(GraphEdge edge) const;
 
+  /// How far odometry is off at most after a way, by what loops have shown [m]; 0 while they are
+  /// too few to tell, and when it is so much that other places may look alike.
+  double ExpectedError(double way_m) const;
+
   const SystematicDrift& drift() const { return drift_; }
   double translation_scale() const { return translation_scale_; }  ///< of the noise assumed
   double rotation_scale() const { return rotation_scale_; }
