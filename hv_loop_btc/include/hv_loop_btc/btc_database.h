@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -42,12 +43,15 @@ class BtcDatabase {
   std::size_t MemoryBytes() const;
 
  private:
+  using TriangleBits = std::array<std::uint64_t, 3>;
+
   /// A triangle in the chain of its bucket.
   struct Link {
     std::uint32_t entry;
     std::uint32_t next;
     std::uint16_t triangle;
     std::uint16_t tag;  ///< further bits of the hash, to skip others in the same bucket
+    TriangleBits bits;  ///< of the vertices: a copy, since what is compared most must lie together
   };
   struct Match {
     std::uint32_t entry;
@@ -62,7 +66,7 @@ class BtcDatabase {
                                               const std::vector<char>& wanted) const;
   void MatchTriangle(const BtcDescriptor& query, std::uint16_t triangle,
                      const std::vector<char>& wanted, std::vector<Match>& matches) const;
-  bool Similar(const BtcDescriptor& query, const BtcTriangle& triangle, const Link& link) const;
+  bool Similar(const TriangleBits& query, const TriangleBits& stored) const;
   std::vector<BtcCandidate> Align(const BtcDescriptor& query, const std::vector<Match>& matches,
                                   double tolerance, const Filter& filter) const;
 
