@@ -112,8 +112,11 @@ void MappingNode::ReportChanges(const LoopState& state) {
   }
   if (!reported_.joined && state.joined) ROS_INFO_STREAM("joined: the place in the map is known");
   if (state.optimized != reported_.optimized) ROS_INFO_STREAM(state.optimization);
-  const bool changed = state.optimized != reported_.optimized || state.joined != reported_.joined;
-  if (changed) transforms_.Update(state.T_map_odom, state.joined != reported_.joined);
+  // Besides loops, every keyframe moves it a little once systematic drift is taken out.
+  constexpr double kRounding = 1e-9;
+  const bool moved = !state.T_map_odom.isApprox(reported_.T_map_odom, kRounding);
+  const bool at_once = state.joined != reported_.joined;
+  if (moved || at_once) transforms_.Update(state.T_map_odom, at_once);
   reported_ = state;
 }
 
