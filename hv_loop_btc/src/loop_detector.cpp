@@ -60,8 +60,6 @@ LoopDetector::LoopDetector(const LoopDetectorConfig& config, const BtcConfig& bt
       extractor_(btc),
       database_(btc),
       registration_(registration),
-      min_fitness_(registration.min_fitness),
-      max_seen_through_(registration.max_seen_through),
       clouds_(std::move(clouds)) {}
 
 DriftLimits LoopDetector::LimitsFor(const SubmapRecord& record, const LoopPrior& prior) const {
@@ -134,11 +132,12 @@ void LoopDetector::Align(const Submap& submap, LoopCandidate& candidate) const {
   candidate.fitness = aligned.fitness;
   candidate.overlap = aligned.overlap;
   candidate.seen_through = aligned.seen_through;
-  if (aligned.seen_through > max_seen_through_) {
+  if (aligned.seen_through > registration_.config().max_seen_through) {
     candidate.reason = "one submap sees through the other";
   } else if (!aligned.converged) {
     candidate.reason = "fine alignment does not converge";
-  } else if (aligned.fitness < min_fitness_ || candidate.score() < config_.min_score) {
+  } else if (aligned.fitness < registration_.config().min_fitness ||
+             candidate.score() < config_.min_score) {
     candidate.reason = "submaps do not fit";
   } else if (candidate.T_match_query.translation().norm() > loop_distance_m()) {
     candidate.reason = "places are too far apart";

@@ -90,8 +90,6 @@ class LoopDetector {
   BtcExtractor extractor_;
   BtcDatabase database_;
   SubmapRegistration registration_;
-  double min_fitness_;
-  double max_seen_through_;
   CloudSource clouds_;
   std::vector<SubmapRecord> records_;  ///< one an entry of the database
   Timing timing_;

@@ -53,6 +53,8 @@ class SubmapRegistration {
                            const Eigen::Vector3d& source_up,
                            const Pose& T_target_source_guess) const;
 
+  const RegistrationConfig& config() const { return config_; }
+
  private:
   RegistrationConfig config_;
 };
