@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cube_key.h"
+#include "hv_core/cube_key.h"
 #include "hv_ros/conversions.h"
 
 namespace hv::loop {

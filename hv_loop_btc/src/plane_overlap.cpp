@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "cube_key.h"
+#include "hv_core/cube_key.h"
 
 namespace hv::loop {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "cube_key.h"
+#include "hv_core/cube_key.h"
 
 namespace hv::loop {
 namespace {

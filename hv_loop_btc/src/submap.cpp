@@ -3,7 +3,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "cube_key.h"
+#include "hv_core/cube_key.h"
 
 namespace hv::loop {
 void SubmapConfig::Describe(ConfigVisitor& visitor) {

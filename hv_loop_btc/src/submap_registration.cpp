@@ -8,10 +8,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include "cube_key.h"
+#include "hv_core/cube_key.h"
 #include "hv_core/so3.h"
 #include "hv_loop_btc/submap.h"
-#include "view_image.h"
+#include "hv_loop_btc/view_image.h"
 
 namespace hv::loop {
 namespace {
@@ -27,11 +27,18 @@ constexpr double kLevel = 0.8;
 struct Gaussian {
   Eigen::Vector3d mean;
   Eigen::Matrix3d information;  ///< inverse covariance
-  Eigen::Vector3d normal;       ///< of the thinnest direction
+  Eigen::Matrix3d pull;         ///< weight of a residual: of a plane, across it alone
+  Eigen::Vector3d normal;       ///< of the thinnest direction, towards the sensor
   bool planar = false;
 };
 
-/// The target as Gaussians, one a voxel.
+struct SourcePoint {
+  Eigen::Vector3d position;
+  /// Of the surface the point lies on, towards the sensor; zero where there is no plane.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+};
+
+/// A submap as Gaussians, one a voxel.
 class GaussianGrid {
  public:
   GaussianGrid(const std::vector<Eigen::Vector3f>& points, double voxel_m)
@@ -57,9 +64,16 @@ class GaussianGrid {
     }
   }
 
+  /// The Gaussian of the voxel of `point`; nullptr when it is unknown.
+  const Gaussian* At(const Eigen::Vector3f& point) const {
+    const auto found = voxels_.find(CubeKey(point, inverse_size_));
+    return found == voxels_.end() ? nullptr : &found->second;
+  }
+
   /// The Gaussian of the seven voxels at and around `point` that fits it best; nullptr when all are
-  /// unknown.
-  const Gaussian* Nearest(const Eigen::Vector3d& point) const {
+  /// unknown. The far side of a wall is not the wall: a plane that faces away from `normal` is
+  /// passed over.
+  const Gaussian* Nearest(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
     const Cube cube = CubeOf(point.cast<float>(), inverse_size_);
     static constexpr int kSteps[7][3] = {{0, 0, 0},  {1, 0, 0}, {-1, 0, 0}, {0, 1, 0},
                                          {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -69,6 +83,7 @@ class GaussianGrid {
       const auto found =
           voxels_.find(CubeKey(Cube{cube.x + step[0], cube.y + step[1], cube.z + step[2]}));
       if (found == voxels_.end()) continue;
+      if (found->second.planar && found->second.normal.dot(normal) < 0.0) continue;
       const Eigen::Vector3d offset = point - found->second.mean;
       const double distance = offset.dot(found->second.information * offset);
       if (best != nullptr && distance >= least) continue;
@@ -86,9 +101,14 @@ class GaussianGrid {
     Gaussian gaussian;
     gaussian.mean = mean;
     gaussian.normal = solver.eigenvectors().col(0);
+    if (gaussian.normal.dot(mean) > 0.0) gaussian.normal = -gaussian.normal;
     gaussian.planar = variance[0] < 0.1 * variance[1];
     gaussian.information = solver.eigenvectors() * variance.cwiseInverse().asDiagonal() *
                            solver.eigenvectors().transpose();
+    gaussian.pull = gaussian.information;
+    if (gaussian.planar) {
+      gaussian.pull = gaussian.normal * gaussian.normal.transpose() / variance[0];
+    }
     return gaussian;
   }
 
@@ -102,37 +122,38 @@ struct NormalEquations {
 };
 
 /// Sum over the source points; Geman-McClure weights of scale `robust` sigmas.
-NormalEquations Linearize(const GaussianGrid& target, const std::vector<Eigen::Vector3d>& source,
+NormalEquations Linearize(const GaussianGrid& target, const std::vector<SourcePoint>& source,
                           const Pose& pose, double robust) {
   NormalEquations equations;
-  for (const Eigen::Vector3d& point : source) {
-    const Eigen::Vector3d moved = pose * point;
-    const Gaussian* gaussian = target.Nearest(moved);
+  for (const SourcePoint& point : source) {
+    const Eigen::Vector3d moved = pose * point.position;
+    const Gaussian* gaussian = target.Nearest(moved, pose.linear() * point.normal);
     if (gaussian == nullptr) continue;
     const Eigen::Vector3d residual = moved - gaussian->mean;
     const double squared = residual.dot(gaussian->information * residual);
     const double ratio = robust * robust / (robust * robust + squared);
     Eigen::Matrix<double, 3, 6> jacobian;
     jacobian.leftCols<3>() = pose.linear();
-    jacobian.rightCols<3>() = -pose.linear() * so3::Hat(point);
+    jacobian.rightCols<3>() = -pose.linear() * so3::Hat(point.position);
     const Eigen::Matrix<double, 6, 3> weighted =
-        ratio * ratio * jacobian.transpose() * gaussian->information;
+        ratio * ratio * jacobian.transpose() * gaussian->pull;
     equations.information.noalias() += weighted * jacobian;
     equations.gradient.noalias() += weighted * residual;
   }
   return equations;
 }
 
-void JudgeFit(const GaussianGrid& target, const std::vector<Eigen::Vector3d>& source,
+void JudgeFit(const GaussianGrid& target, const std::vector<SourcePoint>& source,
               const Eigen::Vector3d& source_up, double inlier_m, RegistrationResult& result) {
   const Eigen::Vector3d up = result.T_target_source.linear() * source_up;
   std::size_t known = 0;
   std::size_t upright = 0;
   std::size_t inliers = 0;
   double squares = 0.0;
-  for (const Eigen::Vector3d& point : source) {
-    const Eigen::Vector3d moved = result.T_target_source * point;
-    const Gaussian* gaussian = target.Nearest(moved);
+  for (const SourcePoint& point : source) {
+    const Eigen::Vector3d moved = result.T_target_source * point.position;
+    const Gaussian* gaussian =
+        target.Nearest(moved, result.T_target_source.linear() * point.normal);
     if (gaussian == nullptr) continue;
     ++known;
     if (gaussian->planar && std::abs(gaussian->normal.dot(up)) > kLevel) continue;
@@ -159,6 +180,20 @@ double SeenThrough(const std::vector<Eigen::Vector3f>& target,
   const std::size_t compared = a.compared + b.compared;
   if (compared == 0) return 0.0;
   return static_cast<double>(a.seen_through + b.seen_through) / static_cast<double>(compared);
+}
+
+/// The source thinned to cubes of `leaf_m`, with normals of its own voxels.
+std::vector<SourcePoint> SourcePoints(const std::vector<Eigen::Vector3f>& source, double leaf_m,
+                                      double voxel_m) {
+  const GaussianGrid surfaces(source, voxel_m);
+  std::vector<SourcePoint> points;
+  for (const Eigen::Vector3f& thinned : Thinned(source, leaf_m)) {
+    SourcePoint& point = points.emplace_back();
+    point.position = thinned.cast<double>();
+    const Gaussian* surface = surfaces.At(thinned);
+    if (surface != nullptr && surface->planar) point.normal = surface->normal;
+  }
+  return points;
 }
 
 }  // namespace
@@ -195,10 +230,8 @@ RegistrationResult SubmapRegistration::Align(const std::vector<Eigen::Vector3f>&
                                              const Pose& T_target_source_guess) const {
   RegistrationResult result;
   result.T_target_source = T_target_source_guess;
-  std::vector<Eigen::Vector3d> points;
-  for (const Eigen::Vector3f& point : Thinned(source, config_.source_leaf_m)) {
-    points.push_back(point.cast<double>());
-  }
+  const std::vector<SourcePoint> points =
+      SourcePoints(source, config_.source_leaf_m, config_.fine_voxel_m);
   if (points.empty()) return result;
   struct Stage {
     double voxel_m;

@@ -52,6 +52,49 @@ TEST(RegistrationTest, AnotherPlaceIsSeenThrough) {
   EXPECT_GT(align(other).seen_through, 0.005);
 }
 
+/// Points on the rectangle between two corners, which agree in one coordinate; 1 cm of noise.
+void AddRectangle(const Eigen::Vector3f& low, const Eigen::Vector3f& high, std::mt19937& random,
+                  std::vector<Eigen::Vector3f>& points) {
+  constexpr float kStep = 0.07F;
+  std::normal_distribution<float> noise(0.0F, 0.01F);
+  const Eigen::Vector3f size = high - low;
+  int thin = 0;
+  size.minCoeff(&thin);
+  const int u = (thin + 1) % 3;
+  const int v = (thin + 2) % 3;
+  for (float a = 0.0F; a < size[u]; a += kStep) {
+    for (float b = 0.0F; b < size[v]; b += kStep) {
+      Eigen::Vector3f point = low;
+      point[u] += a;
+      point[v] += b;
+      point[thin] += noise(random);
+      points.push_back(point);
+    }
+  }
+}
+
+TEST(RegistrationTest, TheFarSideOfAWallIsNotTheWall) {
+  constexpr float kThickness = 0.12F;
+  const Eigen::Vector3f to_source(4.0F, 0.0F, 0.0F);
+  std::mt19937 random(5);
+  std::vector<Eigen::Vector3f> target;
+  std::vector<Eigen::Vector3f> source;
+  for (std::vector<Eigen::Vector3f>* cloud : {&target, &source}) {
+    AddRectangle({-6.0F, -4.0F, -1.0F}, {8.0F, 4.0F, -1.0F}, random, *cloud);
+    AddRectangle({-6.0F, -4.0F, -1.0F}, {8.0F, -4.0F, 2.0F}, random, *cloud);
+    AddRectangle({-6.0F, 0.0F, -1.0F}, {-6.0F, 1.5F, 2.0F}, random, *cloud);
+    const float face = cloud == &target ? 2.0F : 2.0F + kThickness;
+    AddRectangle({face, -4.0F, -1.0F}, {face, 0.0F, 2.0F}, random, *cloud);
+    AddRectangle({face, 1.5F, -1.0F}, {face, 4.0F, 2.0F}, random, *cloud);
+  }
+  for (Eigen::Vector3f& point : source) point -= to_source;
+  Pose truth = Pose::Identity();
+  truth.translation() = to_source.cast<double>();
+  const RegistrationResult result = SubmapRegistration{RegistrationConfig()}.Align(
+      target, source, Eigen::Vector3d::UnitZ(), truth);
+  EXPECT_LT((result.T_target_source.translation() - truth.translation()).norm(), 0.01);
+}
+
 TEST(RegistrationTest, EmptyCloudsAreTotal) {
   std::mt19937 random(2);
   const Submap place = Town(8).SubmapAt(0, SensorPose(0.0, 0.0, 0.0), random);

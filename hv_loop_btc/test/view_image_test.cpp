@@ -1,4 +1,4 @@
-#include "view_image.h"
+#include "hv_loop_btc/view_image.h"
 
 #include <gtest/gtest.h>
 

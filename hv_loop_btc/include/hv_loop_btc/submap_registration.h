@@ -41,7 +41,8 @@ struct RegistrationResult {
 };
 
 /// Fine alignment of submaps (methods section 2, step 7): source points against Gaussians fitted to
-/// the voxels of the target, coarse to fine, Gauss-Newton on SE(3) with a robust weight.
+/// the voxels of the target, coarse to fine, Gauss-Newton on SE(3) with a robust weight. Planes pull
+/// across themselves only, and only points that were seen from the same side.
 class SubmapRegistration {
  public:
   explicit SubmapRegistration(const RegistrationConfig& config) : config_(config) {}

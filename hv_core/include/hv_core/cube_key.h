@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace hv::loop {
+namespace hv {
 
 /// Cell of a cubic grid.
 struct Cube {
@@ -33,4 +33,4 @@ inline std::uint64_t CubeKey(const Eigen::Vector3f& point, float inverse_size) {
   return CubeKey(CubeOf(point, inverse_size));
 }
 
-}  // namespace hv::loop
+}  // namespace hv
