@@ -1,30 +1,17 @@
 #include "hv_replay/loop_eval.h"
 
-#include <algorithm>
 #include <cstdio>
-#include <filesystem>
 
 #include "hv_core/error.h"
 #include "hv_core/point_cloud_file.h"
 #include "hv_core/trajectory.h"
+#include "hv_replay/cloud_folder.h"
 #include "hv_replay/console.h"
 #include "hv_replay/csv_log.h"
 #include "hv_replay/loop_table.h"
 
 namespace hv::replay {
 namespace {
-
-std::vector<std::string> CloudFiles(const std::string& folder) {
-  std::error_code error;
-  std::vector<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension == ".pcd" || extension == ".ply") files.push_back(entry.path().string());
-  }
-  if (error) throw InputError(folder + ": cannot be read (" + error.message() + ")");
-  std::sort(files.begin(), files.end());
-  return files;
-}
 
 /// Without odometry every place on this floor and every heading is possible.
 loop::LoopConfig Blinded(loop::LoopConfig config) {

@@ -5,16 +5,19 @@
 #include "hv_loop_btc/loop_closer.h"
 #include "hv_loop_btc/map_builder.h"
 #include "hv_loop_btc/mapping_config.h"
+#include "hv_relocalize_ndt/relocalize_config.h"
 
 namespace hv::replay {
 
 /// The whole configuration file: what the odometry node reads (`input`, `points`, `odometry`,
-/// `output`) and what the loop closing node reads (`loop`, `map`, `mapping`).
+/// `output`), what the loop closing node reads (`loop`, `map`, `mapping`) and what localisation reads
+/// (`relocalize`).
 struct SlamConfig {
   lio::SystemConfig system;
   loop::LoopConfig loop;
   loop::MapBuilderConfig map;
   loop::MappingNodeConfig mapping;  ///< of the node alone, kept so that one file serves all
+  relocalize::RelocalizeConfig relocalize;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

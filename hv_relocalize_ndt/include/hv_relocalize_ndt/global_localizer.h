@@ -1,0 +1,72 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "hv_core/se3.h"
+#include "hv_relocalize_ndt/place_score.h"
+#include "hv_relocalize_ndt/pose_search.h"
+#include "hv_relocalize_ndt/prior_map.h"
+#include "hv_relocalize_ndt/relocalize_config.h"
+
+namespace hv::relocalize {
+
+/// What is to be found in a map.
+struct LocalizationQuery {
+  /// One scan, or several as one cloud; the sensor was at the origin of their frame [m].
+  std::vector<Eigen::Vector3f> points;
+  /// Against gravity in that frame, where an IMU knows it. Else it is read off floors and walls,
+  /// from the z axis, or that of the guess, to 30 deg.
+  std::optional<Eigen::Vector3d> up;
+  /// About where the scan was taken (RelocalizeConfig::guess_radius_m, guess_heading_deg); without,
+  /// anywhere.
+  std::optional<Pose> T_map_scan_guess;
+};
+
+/// A pose that has been followed up.
+struct LocalizationCandidate {
+  Pose T_map_scan = Pose::Identity();
+  std::string origin;  ///< what proposed it
+  PlaceScore score;
+};
+
+/// The answer.
+struct LocalizationResult {
+  bool localized = false;
+  std::string reason;  ///< why not, one line
+  Pose T_map_scan = Pose::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  ///< of a right perturbation, translation then rotation
+  PlaceScore score;
+  double margin = 0.0;  ///< of the score over that of the best other place
+  std::vector<LocalizationCandidate> candidates;  ///< distinct places, best first
+};
+
+/// Says where in a map a scan was taken, or that it cannot (paper 3.4): candidates from the map's
+/// descriptors and from a search over its structure, each refined by NDT, judged by how its
+/// surfaces fit, and accepted only when one place fits well and no other does. Keeps a reference to
+/// the map. Const methods are thread-safe.
+class GlobalLocalizer {
+ public:
+  GlobalLocalizer(const RelocalizeConfig& config, const PriorMap& map)
+      : config_(config), map_(map), registration_(config.ndt) {}
+
+  LocalizationResult Locate(const LocalizationQuery& query) const;
+
+ private:
+  struct Scan;
+  Scan Prepare(const LocalizationQuery& query) const;
+  std::vector<LocalizationCandidate> Propose(const LocalizationQuery& query,
+                                             const Scan& scan) const;
+  PoseWindow WindowFor(const LocalizationQuery& query, const Scan& scan) const;
+  void Refine(const Scan& scan, std::vector<LocalizationCandidate>& candidates) const;
+  void Decide(const Scan& scan, LocalizationResult& result) const;
+
+  RelocalizeConfig config_;
+  const PriorMap& map_;
+  NdtRegistration registration_;
+};
+
+}  // namespace hv::relocalize

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "hv_core/config.h"
+#include "hv_core/se3.h"
+#include "hv_relocalize_ndt/ndt_level.h"
+
+namespace hv::relocalize {
+
+struct NdtConfig {
+  std::vector<double> resolutions_m = {10.0, 5.0, 3.0, 1.0};
+  double outlier_share = 0.55;
+  double leaf_share = 0.2;
+  double min_leaf_m = 0.25;
+  int max_iterations = 25;
+  double converged_share = 2e-4;
+
+  void Describe(ConfigVisitor& visitor);
+  void Validate(ConfigProblems& problems) const;
+};
+
+/// What the cloud costs at a pose, with derivatives for a right perturbation (translation, then
+/// rotation).
+struct NdtCost {
+  double cost = 0.0;  ///< negative logarithm of the likelihood without its constant; at most 0
+  Vector6d gradient = Vector6d::Zero();
+  Matrix6d hessian = Matrix6d::Zero();  ///< Gauss-Newton part, positive semidefinite
+};
+
+/// The cost of `source` at `T_target_source` (paper Eq. 22-23), summed over the voxels around each
+/// point, so that it is smooth across their borders. Parallel, with the same result for any number
+/// of threads.
+NdtCost EvaluateNdt(const NdtLevel& target, double outlier_share,
+                    const std::vector<Eigen::Vector3f>& source, const Pose& T_target_source);
+
+/// Outcome of an alignment.
+struct NdtResult {
+  Pose T_target_source = Pose::Identity();
+  bool converged = false;
+  int iterations = 0;                   ///< of all levels
+  double cost_per_point = 0.0;          ///< at the finest level; levels cannot be compared
+  Matrix6d hessian = Matrix6d::Zero();  ///< at the finest level, of a right perturbation
+};
+
+/// Aligns clouds to a map of Gaussians, coarse to fine, each level from the solution of the one
+/// before, by Levenberg-Marquardt on SE(3) (paper 3.4). Immutable; safe to call concurrently.
+class NdtRegistration {
+ public:
+  explicit NdtRegistration(const NdtConfig& config) : config_(config) {}
+
+  /// `levels`, coarse to fine; `source` in its own frame [m], any density.
+  NdtResult Align(const std::vector<const NdtLevel*>& levels,
+                  const std::vector<Eigen::Vector3f>& source,
+                  const Pose& T_target_source_guess) const;
+
+  const NdtConfig& config() const { return config_; }
+
+ private:
+  void AlignLevel(const NdtLevel& level, const std::vector<Eigen::Vector3f>& source,
+                  NdtResult& result) const;
+
+  NdtConfig config_;
+};
+
+}  // namespace hv::relocalize

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "hv_core/map_folder.h"
+#include "hv_loop_btc/saved_session.h"
+#include "hv_relocalize_ndt/ndt_level.h"
+#include "hv_relocalize_ndt/relocalize_config.h"
+#include "hv_relocalize_ndt/structure.h"
+
+namespace hv::relocalize {
+
+/// A saved map, ready to be localised in: its cloud as Gaussians at every resolution, as structure
+/// to search, and the descriptors and poses it came with. z points up. Immutable; const methods may
+/// run concurrently.
+class PriorMap {
+ public:
+  /// From a map folder, or a PCD or PLY file. Throws InputError when it is damaged or has no cloud.
+  static PriorMap Load(const std::string& path, const RelocalizeConfig& config);
+
+  /// From points [m].
+  PriorMap(std::string name, std::vector<Eigen::Vector3f> points, const RelocalizeConfig& config);
+
+  const std::string& name() const { return name_; }
+  const std::vector<Eigen::Vector3f>& points() const { return points_; }
+  /// Coarse to fine.
+  std::vector<const NdtLevel*> Levels() const;
+  /// Those of the search and of the score.
+  const NdtLevel& surfaces() const { return *surfaces_; }
+  const StructureGrid& structure() const { return *structure_; }
+  /// Keyframes and descriptors; none for a plain cloud.
+  const std::optional<loop::SavedSession>& session() const { return session_; }
+
+ private:
+  std::string name_;
+  std::vector<Eigen::Vector3f> points_;
+  std::vector<NdtLevel> levels_;
+  std::unique_ptr<NdtLevel> surfaces_;
+  std::unique_ptr<StructureGrid> structure_;
+  std::optional<loop::SavedSession> session_;
+};
+
+}  // namespace hv::relocalize

@@ -1,0 +1,46 @@
+#include "hv_relocalize_ndt/relocalize_config.h"
+
+namespace hv::relocalize {
+
+void AcceptanceConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Field("min_fit", min_fit, "share of the scan's surfaces that must fit, 0 to 1");
+  visitor.Field("min_overlap", min_overlap,
+                "share of them that must lie where the map knows anything, 0 to 1");
+  visitor.Field("max_seen_through", max_seen_through,
+                "share of the map in view that the scan may pass through, 0 to 1");
+  visitor.Field("margin", margin, "of the score over that of any other place");
+}
+
+void AcceptanceConfig::Validate(ConfigProblems& problems) const {
+  const auto share = [&](double value, const char* key) {
+    problems.Require(value >= 0.0 && value <= 1.0, std::string("accept.") + key,
+                     "must lie between 0 and 1");
+  };
+  share(min_fit, "min_fit");
+  share(min_overlap, "min_overlap");
+  share(max_seen_through, "max_seen_through");
+  share(margin, "margin");
+}
+
+void RelocalizeConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Section("ndt", ndt, "alignment at several resolutions");
+  visitor.Section("search", search, "search over the structure of the map");
+  visitor.Section("score", score, "how the fit of a place is measured");
+  visitor.Section("accept", accept, "when a place counts as found");
+  visitor.Field("guess_radius_m", guess_radius_m, "how far a guess may be off [m]");
+  visitor.Field("guess_heading_deg", guess_heading_deg, "and how far its heading [deg]");
+  visitor.Field("covariance_scale", covariance_scale,
+                "neighbouring points err alike: factor on the covariance of the alignment");
+}
+
+void RelocalizeConfig::Validate(ConfigProblems& problems) const {
+  ndt.Validate(problems);
+  search.Validate(problems);
+  score.Validate(problems);
+  accept.Validate(problems);
+  problems.Require(guess_radius_m > 0.0, "relocalize.guess_radius_m", "must be positive");
+  problems.Require(guess_heading_deg > 0.0, "relocalize.guess_heading_deg", "must be positive");
+  problems.Require(covariance_scale > 0.0, "relocalize.covariance_scale", "must be positive");
+}
+
+}  // namespace hv::relocalize
