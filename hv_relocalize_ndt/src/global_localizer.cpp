@@ -32,13 +32,15 @@ std::string Percent(double share) {
 /// The query, prepared once for all candidates.
 struct GlobalLocalizer::Scan {
   const std::vector<Eigen::Vector3f>& points;
+  NdtSource source;
   NdtLevel surfaces;
   Eigen::Vector3d up;
   Eigen::Matrix3d R_level_scan;
 };
 
 GlobalLocalizer::Scan GlobalLocalizer::Prepare(const LocalizationQuery& query) const {
-  Scan scan{query.points, NdtLevel(config_.search.cell_m, query.points), Eigen::Vector3d::UnitZ(),
+  Scan scan{query.points, NdtSource(config_.ndt, query.points),
+            NdtLevel(config_.search.cell_m, query.points), Eigen::Vector3d::UnitZ(),
             Eigen::Matrix3d::Identity()};
   if (query.up) {
     scan.up = query.up->normalized();
@@ -99,7 +101,7 @@ void GlobalLocalizer::Refine(const Scan& scan,
   for (LocalizationCandidate& candidate : candidates) {
     const auto levels = candidate.origin == "guess" ? map_.Levels() : fine;
     candidate.T_map_scan =
-        registration_.Align(levels, scan.points, candidate.T_map_scan).T_target_source;
+        registration_.Align(levels, scan.source, candidate.T_map_scan).T_target_source;
     candidate.score = judge.Judge(candidate.T_map_scan);
   }
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -118,7 +120,7 @@ void GlobalLocalizer::Decide(const Scan& scan, LocalizationResult& result) const
   result.score = best.score;
   result.margin = best.score.score() -
                   (result.candidates.size() > 1 ? result.candidates[1].score.score() : 0.0);
-  const NdtResult last = registration_.Align({map_.Levels().back()}, scan.points, best.T_map_scan);
+  const NdtResult last = registration_.Align({map_.Levels().back()}, scan.source, best.T_map_scan);
   result.T_map_scan = last.T_target_source;
   result.covariance =
       config_.covariance_scale * last.hessian.ldlt().solve(Matrix6d(Matrix6d::Identity()));

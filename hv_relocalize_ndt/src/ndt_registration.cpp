@@ -62,6 +62,7 @@ struct Evaluation {
       float cost = 0.0F;
       for (std::uint32_t k = 0; k < around->count; ++k) {
         const NdtVoxel& voxel = target.voxels()[around->voxels[k]];
+        if (voxel.facing.dot(arm) > 0.0F) continue;
         const Eigen::Vector3f residual = moved - voxel.mean;
         const Eigen::Vector3f drawn = voxel.information * residual;
         const float exponent = 0.5F * d2 * residual.dot(drawn);
@@ -137,14 +138,20 @@ NdtCost EvaluateNdt(const NdtLevel& target, double outlier_share,
   return result;
 }
 
+NdtSource::NdtSource(const NdtConfig& config, const std::vector<Eigen::Vector3f>& points)
+    : config_(config), points_(loop::Thinned(points, config.min_leaf_m)) {}
+
+std::vector<Eigen::Vector3f> NdtSource::For(double resolution_m) const {
+  const double leaf = config_.leaf_share * resolution_m;
+  return leaf > config_.min_leaf_m ? loop::Thinned(points_, leaf) : points_;
+}
+
 NdtResult NdtRegistration::Align(const std::vector<const NdtLevel*>& levels,
-                                 const std::vector<Eigen::Vector3f>& source,
-                                 const Pose& T_target_source_guess) const {
+                                 const NdtSource& source, const Pose& T_target_source_guess) const {
   NdtResult result;
   result.T_target_source = T_target_source_guess;
   for (const NdtLevel* level : levels) {
-    const double leaf = std::max(config_.min_leaf_m, config_.leaf_share * level->resolution_m());
-    AlignLevel(*level, loop::Thinned(source, leaf), result);
+    AlignLevel(*level, source.For(level->resolution_m()), result);
   }
   return result;
 }

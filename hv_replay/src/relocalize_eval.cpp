@@ -143,7 +143,7 @@ class Trials {
     Answer answer;
     if (trials_.ndt_alone && guess) {
       answer.pose = relocalize::NdtRegistration(config_.ndt)
-                        .Align(map_.Levels(), points, *guess)
+                        .Align(map_.Levels(), relocalize::NdtSource(config_.ndt, points), *guess)
                         .T_target_source;
       answer.origin = "guess";
       return answer;

@@ -14,6 +14,9 @@ struct NdtVoxel {
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();         ///< [m]
   Eigen::Matrix3f information = Eigen::Matrix3f::Zero();  ///< inverse covariance [1/m^2]
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();      ///< of the thinnest direction
+  /// The normal away from a parallel plane close by: of one face of a wall or slab whose other face
+  /// is known as well. Zero where nothing says which side the plane is seen from.
+  Eigen::Vector3f facing = Eigen::Vector3f::Zero();
   float thickness_m = 0.0F;  ///< standard deviation across, before small eigenvalues are raised
   float flatness = 1.0F;     ///< smallest variance as a share of the middle one
   std::uint32_t points = 0;
@@ -21,17 +24,18 @@ struct NdtVoxel {
   bool planar() const { return flatness < 0.1F; }
 };
 
-/// A cloud as Gaussians, one for each cube that holds enough points. Immutable; const methods may
-/// run concurrently.
+/// A cloud as Gaussians, one for each cube that holds enough points, two where these lie on two
+/// parallel planes: one Gaussian for both faces of a wall or slab would draw scans into it.
+/// Immutable; const methods may run concurrently.
 class NdtLevel {
  public:
-  /// Voxels around a place: at most seven.
+  /// Voxels around a place: of seven cubes.
   struct Neighbors {
-    std::array<std::uint32_t, 7> voxels{};
+    std::array<std::uint32_t, 14> voxels{};
     std::uint32_t count = 0;
   };
 
-  /// `points` [m]; at least five of them make a voxel.
+  /// `points` [m]; at least five of them make a voxel (paper 3.4).
   NdtLevel(double resolution_m, const std::vector<Eigen::Vector3f>& points);
   /// From voxels that were made before.
   NdtLevel(double resolution_m, std::vector<NdtVoxel> voxels);
@@ -41,18 +45,16 @@ class NdtLevel {
 
   /// The voxels of the cube of `point` and the six cubes beside it; nullptr where there are none.
   const Neighbors* Around(const Eigen::Vector3f& point) const;
-  /// The voxel of the cube of `point`; nullptr where there is none.
-  const NdtVoxel* At(const Eigen::Vector3f& point) const;
 
  private:
   void Index();
+  void FindFaces();
 
   double resolution_m_;
   float inverse_size_;
   std::vector<NdtVoxel> voxels_;
   std::vector<Neighbors> neighbors_;
-  tsl::robin_map<std::uint64_t, std::uint32_t> cubes_;  ///< of every cube beside a voxel
-  tsl::robin_map<std::uint64_t, std::uint32_t> own_;    ///< of every voxel
+  tsl::robin_map<std::uint64_t, std::uint32_t> cubes_;  ///< with a voxel beside
 };
 
 }  // namespace hv::relocalize

@@ -23,7 +23,21 @@ struct NdtConfig {
   void Validate(ConfigProblems& problems) const;
 };
 
-/// What the cloud costs at a pose, with derivatives for a right perturbation (translation, then
+/// A scan prepared for the alignment at several resolutions.
+class NdtSource {
+ public:
+  /// `points` in the frame of the scan, whose origin the sensor was at [m], any density.
+  NdtSource(const NdtConfig& config, const std::vector<Eigen::Vector3f>& points);
+
+  /// Thinned for voxels of this size.
+  std::vector<Eigen::Vector3f> For(double resolution_m) const;
+
+ private:
+  const NdtConfig& config_;
+  std::vector<Eigen::Vector3f> points_;
+};
+
+/// What a scan costs at a pose, with derivatives for a right perturbation (translation, then
 /// rotation).
 struct NdtCost {
   double cost = 0.0;  ///< negative logarithm of the likelihood without its constant; at most 0
@@ -32,8 +46,9 @@ struct NdtCost {
 };
 
 /// The cost of `source` at `T_target_source` (paper Eq. 22-23), summed over the voxels around each
-/// point, so that it is smooth across their borders. Parallel, with the same result for any number
-/// of threads.
+/// point, so that it is smooth across their borders; faces that are turned away
+/// from the sensor draw nothing.
+/// Parallel, with the same result for any number of threads.
 NdtCost EvaluateNdt(const NdtLevel& target, double outlier_share,
                     const std::vector<Eigen::Vector3f>& source, const Pose& T_target_source);
 
@@ -52,9 +67,8 @@ class NdtRegistration {
  public:
   explicit NdtRegistration(const NdtConfig& config) : config_(config) {}
 
-  /// `levels`, coarse to fine; `source` in its own frame [m], any density.
-  NdtResult Align(const std::vector<const NdtLevel*>& levels,
-                  const std::vector<Eigen::Vector3f>& source,
+  /// `levels`: coarse to fine.
+  NdtResult Align(const std::vector<const NdtLevel*>& levels, const NdtSource& source,
                   const Pose& T_target_source_guess) const;
 
   const NdtConfig& config() const { return config_; }
