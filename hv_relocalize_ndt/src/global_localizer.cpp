@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include <Eigen/Cholesky>
 
@@ -31,29 +32,28 @@ std::string Percent(double share) {
 
 /// The query, prepared once for all candidates.
 struct GlobalLocalizer::Scan {
+  Scan(const RelocalizeConfig& config, const NdtLevel& map, const LocalizationQuery& query)
+      : points(query.points),
+        source(config.ndt, query.points),
+        surfaces(map.resolution_m(), query.points),
+        up(UpOf(query, surfaces)),
+        R_level_scan(UprightRotation(up)),
+        judge(config.score, map, surfaces, query.points, up) {}
+
+  static Eigen::Vector3d UpOf(const LocalizationQuery& query, const NdtLevel& surfaces) {
+    if (query.up) return query.up->normalized();
+    Eigen::Vector3d guess = Eigen::Vector3d::UnitZ();
+    if (query.T_map_scan_guess) guess = query.T_map_scan_guess->linear().row(2);
+    return EstimateUp(surfaces, guess);
+  }
+
   const std::vector<Eigen::Vector3f>& points;
   NdtSource source;
   NdtLevel surfaces;
   Eigen::Vector3d up;
   Eigen::Matrix3d R_level_scan;
+  PlaceJudge judge;
 };
-
-GlobalLocalizer::Scan GlobalLocalizer::Prepare(const LocalizationQuery& query) const {
-  Scan scan{query.points, NdtSource(config_.ndt, query.points),
-            NdtLevel(config_.search.cell_m, query.points), Eigen::Vector3d::UnitZ(),
-            Eigen::Matrix3d::Identity()};
-  if (query.up) {
-    scan.up = query.up->normalized();
-  } else {
-    const Eigen::Vector3d guess =
-        query.T_map_scan_guess
-            ? Eigen::Vector3d(query.T_map_scan_guess->linear().transpose().col(2))
-            : Eigen::Vector3d::UnitZ();
-    scan.up = EstimateUp(scan.surfaces, guess);
-  }
-  scan.R_level_scan = UprightRotation(scan.up);
-  return scan;
-}
 
 PoseWindow GlobalLocalizer::WindowFor(const LocalizationQuery& query, const Scan& scan) const {
   PoseWindow window;
@@ -78,6 +78,8 @@ std::vector<LocalizationCandidate> GlobalLocalizer::Propose(const LocalizationQu
   if (query.T_map_scan_guess) {
     candidates.push_back({*query.T_map_scan_guess, "guess", {}});
   }
+  const std::vector<LocalizationCandidate> described = ProposeByDescriptors(scan);
+  candidates.insert(candidates.end(), described.begin(), described.end());
   const PoseSearch search(config_.search, map_.structure());
   const std::vector<PoseHypothesis> hypotheses =
       search.Find(StructureCells(scan.surfaces, scan.R_level_scan), WindowFor(query, scan));
@@ -89,9 +91,17 @@ std::vector<LocalizationCandidate> GlobalLocalizer::Propose(const LocalizationQu
   return candidates;
 }
 
+/// Places whose boundary triangles resemble those of the scan (paper 3.2).
+std::vector<LocalizationCandidate> GlobalLocalizer::ProposeByDescriptors(const Scan& scan) const {
+  std::vector<LocalizationCandidate> candidates;
+  for (const Pose& pose : map_.PlacesLike(scan.points, scan.up)) {
+    candidates.push_back({pose, "descriptors", {}});
+  }
+  return candidates;
+}
+
 void GlobalLocalizer::Refine(const Scan& scan,
                              std::vector<LocalizationCandidate>& candidates) const {
-  const PlaceJudge judge(config_.score, map_.surfaces(), scan.surfaces, scan.points, scan.up);
   std::vector<const NdtLevel*> fine;
   for (const NdtLevel* level : map_.Levels()) {
     if (level->resolution_m() < kSearchBasin_m || level == map_.Levels().back()) {
@@ -102,7 +112,7 @@ void GlobalLocalizer::Refine(const Scan& scan,
     const auto levels = candidate.origin == "guess" ? map_.Levels() : fine;
     candidate.T_map_scan =
         registration_.Align(levels, scan.source, candidate.T_map_scan).T_target_source;
-    candidate.score = judge.Judge(candidate.T_map_scan);
+    candidate.score = scan.judge.Judge(candidate.T_map_scan);
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const LocalizationCandidate& a, const LocalizationCandidate& b) {
@@ -110,37 +120,44 @@ void GlobalLocalizer::Refine(const Scan& scan,
                    });
 }
 
-void GlobalLocalizer::Decide(const Scan& scan, LocalizationResult& result) const {
-  if (result.candidates.empty()) {
-    result.reason = "the scan has no structure to compare";
-    return;
-  }
+/// Pose, covariance and lead of the best candidate.
+void GlobalLocalizer::Measure(const Scan& scan, LocalizationResult& result) const {
   const LocalizationCandidate& best = result.candidates.front();
-  result.T_map_scan = best.T_map_scan;
-  result.score = best.score;
-  result.margin = best.score.score() -
-                  (result.candidates.size() > 1 ? result.candidates[1].score.score() : 0.0);
   const NdtResult last = registration_.Align({map_.Levels().back()}, scan.source, best.T_map_scan);
   result.T_map_scan = last.T_target_source;
+  const Matrix6d damped = last.hessian + 1e-9 * Matrix6d::Identity();
   result.covariance =
-      config_.covariance_scale * last.hessian.ldlt().solve(Matrix6d(Matrix6d::Identity()));
-  const AcceptanceConfig& accept = config_.accept;
-  if (best.score.overlap < accept.min_overlap) {
-    result.reason = "the map knows only " + Percent(best.score.overlap) +
-                    " of what the scan sees at the best place";
-  } else if (best.score.fit < accept.min_fit) {
-    result.reason = "only " + Percent(best.score.fit) + " of the scan fits at the best place";
-  } else if (best.score.seen_through > accept.max_seen_through) {
-    result.reason = "the scan sees through " + Percent(best.score.seen_through) +
-                    " of the map at the best place";
-  } else if (result.margin < accept.margin) {
-    result.reason = "another place fits nearly as well";
+      config_.covariance_scale * damped.ldlt().solve(Matrix6d(Matrix6d::Identity()));
+  result.score = best.score;
+  result.margin = best.score.score();
+  result.lead = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < result.candidates.size(); ++i) {
+    const LocalizationCandidate& other = result.candidates[i];
+    result.margin = std::min(result.margin, best.score.score() - other.score.score());
+    result.lead = std::min(result.lead, scan.judge.Lead(best.T_map_scan, other.T_map_scan));
   }
-  result.localized = result.reason.empty();
+}
+
+/// Empty when the place counts as found.
+std::string GlobalLocalizer::WhyNot(const LocalizationResult& result) const {
+  const AcceptanceConfig& accept = config_.accept;
+  if (result.score.overlap < accept.min_overlap) {
+    return "the map knows only " + Percent(result.score.overlap) +
+           " of what the scan sees at the best place";
+  }
+  if (result.score.fit < accept.min_fit) {
+    return "only " + Percent(result.score.fit) + " of the scan fits at the best place";
+  }
+  if (result.score.seen_through > accept.max_seen_through) {
+    return "the scan sees through " + Percent(result.score.seen_through) +
+           " of the map at the best place";
+  }
+  if (result.lead < accept.min_lead) return "another place fits nearly as well";
+  return "";
 }
 
 LocalizationResult GlobalLocalizer::Locate(const LocalizationQuery& query) const {
-  const Scan scan = Prepare(query);
+  const Scan scan(config_, map_.surfaces(), query);
   std::vector<LocalizationCandidate> candidates = Propose(query, scan);
   Refine(scan, candidates);
   LocalizationResult result;
@@ -151,7 +168,13 @@ LocalizationResult GlobalLocalizer::Locate(const LocalizationQuery& query) const
         });
     if (!known) result.candidates.push_back(candidate);
   }
-  Decide(scan, result);
+  if (result.candidates.empty()) {
+    result.reason = "the scan has no structure to compare";
+    return result;
+  }
+  Measure(scan, result);
+  result.reason = WhyNot(result);
+  result.localized = result.reason.empty();
   return result;
 }
 

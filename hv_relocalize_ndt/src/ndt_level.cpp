@@ -6,8 +6,6 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "hv_core/cube_key.h"
-
 namespace hv::relocalize {
 namespace {
 
@@ -109,7 +107,7 @@ void Fit(const std::vector<Eigen::Vector3f>& points, const Numbers& numbers,
 
 NdtLevel::NdtLevel(double resolution_m, const std::vector<Eigen::Vector3f>& points)
     : resolution_m_(resolution_m), inverse_size_(static_cast<float>(1.0 / resolution_m)) {
-  tsl::robin_map<std::uint64_t, std::uint32_t> index;
+  tsl::robin_map<std::uint64_t, std::uint32_t, CubeHash> index;
   std::vector<Numbers> cubes;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const auto [place, added] = index.try_emplace(CubeKey(points[i], inverse_size_),

@@ -42,26 +42,39 @@ PlaceJudge::PlaceJudge(const PlaceScoreConfig& config, const NdtLevel& map_surfa
   }
 }
 
-bool PlaceJudge::Lies(const NdtVoxel& surface, const Eigen::Isometry3f& T_map_scan,
-                      bool& known) const {
+PlaceJudge::Place PlaceJudge::PlaceOf(const NdtVoxel& surface,
+                                      const Eigen::Isometry3f& T_map_scan) const {
   const Eigen::Vector3f place = T_map_scan * surface.mean;
   const NdtLevel::Neighbors* around = map_.Around(place);
-  if (around == nullptr) return false;
-  known = true;
+  if (around == nullptr) return Place::kUnknown;
   const Eigen::Vector3f normal = T_map_scan.linear() * surface.normal;
   for (std::uint32_t k = 0; k < around->count; ++k) {
     const NdtVoxel& voxel = map_.voxels()[around->voxels[k]];
     const Eigen::Vector3f offset = place - voxel.mean;
     if (!voxel.planar() || !surface.planar()) {
-      if (offset.dot(voxel.information * offset) < kInBlob) return true;
+      if (offset.dot(voxel.information * offset) < kInBlob) return Place::kOn;
       continue;
     }
     if (std::abs(normal.dot(voxel.normal)) < kSameNormal) continue;
-    if (std::abs(offset.dot(voxel.normal)) < static_cast<float>(config_.max_distance_m)) {
-      return true;
-    }
+    const float across = std::abs(offset.dot(voxel.normal));
+    if (across < static_cast<float>(config_.max_distance_m)) return Place::kOn;
   }
-  return false;
+  return Place::kOff;
+}
+
+double PlaceJudge::Lead(const Pose& T_map_scan, const Pose& T_map_scan_other) const {
+  const Eigen::Isometry3f one = T_map_scan.cast<float>();
+  const Eigen::Isometry3f other = T_map_scan_other.cast<float>();
+  double only_one = 0.0;
+  double only_other = 0.0;
+  for (const NdtVoxel& surface : upright_) {
+    const bool fits_one = PlaceOf(surface, one) == Place::kOn;
+    const bool fits_other = PlaceOf(surface, other) == Place::kOn;
+    only_one += fits_one && !fits_other ? 1.0 : 0.0;
+    only_other += fits_other && !fits_one ? 1.0 : 0.0;
+  }
+  const double differing = only_one + only_other;
+  return differing > 0.0 ? (only_one - only_other) / std::sqrt(differing) : 0.0;
 }
 
 PlaceScore PlaceJudge::Judge(const Pose& T_map_scan) const {
@@ -71,9 +84,9 @@ PlaceScore PlaceJudge::Judge(const Pose& T_map_scan) const {
   std::size_t on_surface = 0;
   std::size_t known_places = 0;
   for (const NdtVoxel& surface : upright_) {
-    bool known = false;
-    on_surface += Lies(surface, transform, known) ? 1 : 0;
-    known_places += known ? 1 : 0;
+    const Place place = PlaceOf(surface, transform);
+    on_surface += place == Place::kOn ? 1 : 0;
+    known_places += place != Place::kUnknown ? 1 : 0;
   }
   const auto count = static_cast<double>(upright_.size());
   score.fit = static_cast<double>(on_surface) / count;

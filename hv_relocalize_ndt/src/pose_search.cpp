@@ -11,6 +11,9 @@
 namespace hv::relocalize {
 namespace {
 
+/// Nodes opened at once, and rated by one thread at least.
+constexpr std::size_t kBatch = 64;
+constexpr std::size_t kGrain = 32;
 constexpr double kDegrees = 180.0 / M_PI;
 
 /// The scan at one heading, as cubes relative to that of the sensor.
@@ -56,24 +59,31 @@ class Search {
     Turn(window);
   }
 
+  /// Best first. Several nodes are opened at once, so that threads have work; what they find is
+  /// taken in order of score, as if they had been opened one by one.
   std::vector<PoseHypothesis> Run() {
     std::vector<PoseHypothesis> found;
     if (cells_.empty()) return found;
     std::priority_queue<Node> open(std::less<Node>(), Roots());
     int visited = 0;
     while (!open.empty() && found.size() < static_cast<std::size_t>(config_.max_hypotheses)) {
-      const Node node = open.top();
-      open.pop();
       const double least = found.empty() ? 0.0 : config_.min_score_share * found.front().score;
-      if (node.bound <= least || ++visited > config_.max_nodes) break;
-      if (node.level > 0) {
-        for (const Node& child : ChildrenOf(node)) {
-          if (child.bound > least) open.push(child);
-        }
+      if (open.top().bound <= least || visited > config_.max_nodes) break;
+      if (open.top().level == 0) {
+        const PoseHypothesis hypothesis = HypothesisOf(open.top());
+        open.pop();
+        if (!Known(hypothesis, found)) found.push_back(hypothesis);
         continue;
       }
-      const PoseHypothesis hypothesis = HypothesisOf(node);
-      if (!Known(hypothesis, found)) found.push_back(hypothesis);
+      std::vector<Node> batch;
+      while (!open.empty() && open.top().level > 0 && batch.size() < kBatch) {
+        batch.push_back(open.top());
+        open.pop();
+      }
+      visited += static_cast<int>(batch.size());
+      for (const Node& child : ChildrenOf(batch)) {
+        if (child.bound > least) open.push(child);
+      }
     }
     return found;
   }
@@ -143,6 +153,16 @@ class Search {
            level_weight_ * static_cast<float>(level);
   }
 
+  /// Fills in the bounds.
+  void Rate(std::vector<Node>& nodes) const {
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), kGrain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                          nodes[i].bound = Bound(nodes[i]);
+                        }
+                      });
+  }
+
   std::vector<Node> Roots() const {
     const int level = grid_.depth() - 1;
     const int width = 1 << level;
@@ -151,31 +171,29 @@ class Search {
       for (int z = low_.z(); z <= high_.z(); z += width) {
         for (int y = low_.y(); y <= high_.y(); y += width) {
           for (int x = low_.x(); x <= high_.x(); x += width) {
-            roots.push_back({0.0F, turn, level, {x, y, z}});
+            const Node root{0.0F, turn, level, {x, y, z}};
+            if (grid_.CanStand(level, root.cell)) roots.push_back(root);
           }
         }
       }
     }
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, roots.size()),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                          roots[i].bound = Bound(roots[i]);
-                        }
-                      });
+    Rate(roots);
     return roots;
   }
 
-  std::vector<Node> ChildrenOf(const Node& node) const {
-    const int half = 1 << (node.level - 1);
+  std::vector<Node> ChildrenOf(const std::vector<Node>& nodes) const {
     std::vector<Node> children;
-    for (int corner = 0; corner < 8; ++corner) {
-      Node child = node;
-      child.level = node.level - 1;
-      child.cell += half * Eigen::Vector3i(corner & 1, (corner >> 1) & 1, corner >> 2);
-      if ((child.cell.array() > high_.array()).any()) continue;
-      child.bound = Bound(child);
-      children.push_back(child);
+    for (const Node& node : nodes) {
+      const int half = 1 << (node.level - 1);
+      for (int corner = 0; corner < 8; ++corner) {
+        Node child = node;
+        child.level = node.level - 1;
+        child.cell += half * Eigen::Vector3i(corner & 1, (corner >> 1) & 1, corner >> 2);
+        const bool inside = (child.cell.array() <= high_.array()).all();
+        if (inside && grid_.CanStand(child.level, child.cell)) children.push_back(child);
+      }
     }
+    Rate(children);
     return children;
   }
 

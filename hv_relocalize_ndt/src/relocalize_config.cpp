@@ -8,7 +8,8 @@ void AcceptanceConfig::Describe(ConfigVisitor& visitor) {
                 "share of them that must lie where the map knows anything, 0 to 1");
   visitor.Field("max_seen_through", max_seen_through,
                 "share of the map in view that the scan may pass through, 0 to 1");
-  visitor.Field("margin", margin, "of the score over that of any other place");
+  visitor.Field("min_lead", min_lead,
+                "lead of the best place over any other, in standard deviations of chance");
 }
 
 void AcceptanceConfig::Validate(ConfigProblems& problems) const {
@@ -19,7 +20,7 @@ void AcceptanceConfig::Validate(ConfigProblems& problems) const {
   share(min_fit, "min_fit");
   share(min_overlap, "min_overlap");
   share(max_seen_through, "max_seen_through");
-  share(margin, "margin");
+  problems.Require(min_lead >= 0.0, "accept.min_lead", "must not be negative");
 }
 
 void RelocalizeConfig::Describe(ConfigVisitor& visitor) {
@@ -27,6 +28,9 @@ void RelocalizeConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("search", search, "search over the structure of the map");
   visitor.Section("score", score, "how the fit of a place is measured");
   visitor.Section("accept", accept, "when a place counts as found");
+  visitor.Section("btc", btc, "boundary triangle descriptors, as the map was made with");
+  visitor.Field("descriptor_candidates", descriptor_candidates,
+                "places proposed by the descriptors of the map");
   visitor.Field("guess_radius_m", guess_radius_m, "how far a guess may be off [m]");
   visitor.Field("guess_heading_deg", guess_heading_deg, "and how far its heading [deg]");
   visitor.Field("covariance_scale", covariance_scale,
@@ -38,6 +42,9 @@ void RelocalizeConfig::Validate(ConfigProblems& problems) const {
   search.Validate(problems);
   score.Validate(problems);
   accept.Validate(problems);
+  btc.Validate(problems);
+  problems.Require(descriptor_candidates >= 0, "relocalize.descriptor_candidates",
+                   "must not be negative");
   problems.Require(guess_radius_m > 0.0, "relocalize.guess_radius_m", "must be positive");
   problems.Require(guess_heading_deg > 0.0, "relocalize.guess_heading_deg", "must be positive");
   problems.Require(covariance_scale > 0.0, "relocalize.covariance_scale", "must be positive");

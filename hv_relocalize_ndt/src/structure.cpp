@@ -1,6 +1,8 @@
 #include "hv_relocalize_ndt/structure.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -14,6 +16,9 @@ constexpr float kPi = 3.14159265F;
 /// Cosine of a normal to the vertical beyond which a plane is level, and up to which it is a wall.
 constexpr double kLevelCosine = 0.93;
 constexpr double kWallCosine = 0.35;
+/// Where a sensor can be: so far above a floor [m], and beside the seen part of it.
+constexpr double kMostHeight_m = 2.5;
+constexpr double kBeside_m = 1.0;
 /// Most cubes of a grid, all levels together.
 constexpr double kMostCells = 1.5e9;
 
@@ -98,21 +103,9 @@ Eigen::Matrix3d UprightRotation(const Eigen::Vector3d& up) {
 
 StructureGrid::StructureGrid(const NdtLevel& surfaces, int depth)
     : cell_m_(surfaces.resolution_m()), padding_(1 << (depth - 1)) {
-  if (surfaces.voxels().empty()) {
-    padded_size_ = Eigen::Vector3i::Constant(padding_);
-  } else {
-    Eigen::Vector3f low = surfaces.voxels().front().mean;
-    Eigen::Vector3f high = low;
-    for (const NdtVoxel& voxel : surfaces.voxels()) {
-      low = low.cwiseMin(voxel.mean);
-      high = high.cwiseMax(voxel.mean);
-    }
-    origin_ = cell_m_ * (low.cast<double>() / cell_m_).array().floor().matrix();
-    size_ = CellOf(high.cast<double>()) + Eigen::Vector3i::Ones();
-    padded_size_ = size_ + Eigen::Vector3i::Constant(padding_);
-  }
+  SetSize(surfaces);
   const double cells = padded_size_.cast<double>().prod();
-  if (cells * depth > kMostCells) {
+  if (2.0 * cells * depth > kMostCells) {
     throw InputError("the map is too large for a search at " + std::to_string(cell_m_) + " m");
   }
   std::vector<StructureBits> finest(static_cast<std::size_t>(cells), 0);
@@ -121,37 +114,84 @@ StructureGrid::StructureGrid(const NdtLevel& surfaces, int depth)
         CellOf(cell.center.cast<double>()) + Eigen::Vector3i::Constant(padding_);
     finest[Index(at)] |= BitsOf(cell);
   }
-  levels_.push_back(std::move(finest));
-  for (int level = 1; level < depth; ++level) {
-    levels_.push_back(levels_.back());
-    Widen(1 << (level - 1), levels_[static_cast<std::size_t>(level) - 1], levels_.back());
+  levels_ = Windows(std::move(finest), depth);
+  standing_ = Windows(PlacesToStand(), depth);
+}
+
+void StructureGrid::SetSize(const NdtLevel& surfaces) {
+  if (!surfaces.voxels().empty()) {
+    Eigen::Vector3f low = surfaces.voxels().front().mean;
+    Eigen::Vector3f high = low;
+    for (const NdtVoxel& voxel : surfaces.voxels()) {
+      low = low.cwiseMin(voxel.mean);
+      high = high.cwiseMax(voxel.mean);
+    }
+    origin_ = cell_m_ * (low.cast<double>() / cell_m_).array().floor().matrix();
+    size_ = CellOf(high.cast<double>()) + Eigen::Vector3i::Ones();
   }
+  padded_size_ = size_ + Eigen::Vector3i::Constant(padding_);
 }
 
 Eigen::Vector3i StructureGrid::CellOf(const Eigen::Vector3d& point) const {
   return ((point - origin_) / cell_m_).array().floor().cast<int>();
 }
 
+/// Up to kMostHeight_m above every level cube, and kBeside_m beside it, where furniture hides the
+/// floor.
+std::vector<StructureBits> StructureGrid::PlacesToStand() const {
+  const int beside = static_cast<int>(std::ceil(kBeside_m / cell_m_));
+  const int above = static_cast<int>(std::ceil(kMostHeight_m / cell_m_));
+  std::vector<StructureBits> places(levels_.front().size(), 0);
+  Eigen::Vector3i cell;
+  for (cell.z() = 0; cell.z() < padded_size_.z(); ++cell.z()) {
+    for (cell.y() = 0; cell.y() < padded_size_.y(); ++cell.y()) {
+      for (cell.x() = 0; cell.x() < padded_size_.x(); ++cell.x()) {
+        if ((levels_.front()[Index(cell)] & kLevel) == 0) continue;
+        const Eigen::Vector3i low =
+            (cell - Eigen::Vector3i(beside, beside, 0)).cwiseMax(Eigen::Vector3i::Zero());
+        const Eigen::Vector3i high = (cell + Eigen::Vector3i(beside, beside, above))
+                                         .cwiseMin(padded_size_ - Eigen::Vector3i::Ones());
+        for (int z = low.z(); z <= high.z(); ++z) {
+          for (int y = low.y(); y <= high.y(); ++y) {
+            const auto row =
+                places.begin() + static_cast<std::ptrdiff_t>(Index(Eigen::Vector3i(low.x(), y, z)));
+            std::fill(row, row + (high.x() - low.x() + 1), StructureBits{1});
+          }
+        }
+      }
+    }
+  }
+  return places;
+}
+
+std::vector<std::vector<StructureBits>> StructureGrid::Windows(std::vector<StructureBits> finest,
+                                                               int depth) const {
+  std::vector<std::vector<StructureBits>> levels{std::move(finest)};
+  for (int level = 1; level < depth; ++level) {
+    levels.push_back(levels.back());
+    Widen(1 << (level - 1), levels.back());
+  }
+  return levels;
+}
+
 /// Adds to every window those that start `step` cubes further on.
-void StructureGrid::Widen(int step, const std::vector<StructureBits>& from,
-                          std::vector<StructureBits>& to) {
-  std::vector<StructureBits> source = from;
+void StructureGrid::Widen(int step, std::vector<StructureBits>& grid) const {
   const std::size_t strides[3] = {
       1, static_cast<std::size_t>(padded_size_.x()),
       static_cast<std::size_t>(padded_size_.x()) * static_cast<std::size_t>(padded_size_.y())};
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t ahead = strides[axis] * static_cast<std::size_t>(step);
+    Eigen::Vector3i end = padded_size_;
+    end[axis] -= step;
     Eigen::Vector3i cell;
-    for (cell.z() = 0; cell.z() < padded_size_.z(); ++cell.z()) {
-      for (cell.y() = 0; cell.y() < padded_size_.y(); ++cell.y()) {
-        for (cell.x() = 0; cell.x() < padded_size_.x(); ++cell.x()) {
-          if (cell[axis] + step >= padded_size_[axis]) continue;
+    for (cell.z() = 0; cell.z() < end.z(); ++cell.z()) {
+      for (cell.y() = 0; cell.y() < end.y(); ++cell.y()) {
+        for (cell.x() = 0; cell.x() < end.x(); ++cell.x()) {
           const std::size_t index = Index(cell);
-          to[index] = static_cast<StructureBits>(source[index] | source[index + ahead]);
+          grid[index] = static_cast<StructureBits>(grid[index] | grid[index + ahead]);
         }
       }
     }
-    source = to;
   }
 }
 

@@ -102,6 +102,7 @@ struct Answer {
   Matrix6d covariance = Matrix6d::Zero();
   relocalize::PlaceScore score;
   double margin = 0.0;
+  double lead = 0.0;
   std::string origin;
 };
 
@@ -127,7 +128,7 @@ class Trials {
     CsvLog log(csv,
                "trial,cloud" + Columns("truth") + Columns("guess") + Columns("result") +
                    ",localized,error_m,error_deg,sigma_m,sigma_deg,ms,fit,overlap,seen_through,"
-                   "margin,origin,reason");
+                   "margin,lead,origin,reason");
     const std::size_t count =
         trials_.count > 0 ? static_cast<std::size_t>(trials_.count) : files_.size();
     ProgressLine progress("trials");
@@ -149,13 +150,8 @@ class Trials {
       return answer;
     }
     const relocalize::LocalizationResult result = localizer_.Locate({points, {}, guess});
-    answer = {result.localized,
-              result.reason,
-              result.T_map_scan,
-              result.covariance,
-              result.score,
-              result.margin,
-              ""};
+    answer = {result.localized, result.reason, result.T_map_scan, result.covariance,
+              result.score,     result.margin, result.lead,       ""};
     if (!result.candidates.empty()) answer.origin = result.candidates.front().origin;
     return answer;
   }
@@ -181,12 +177,12 @@ class Trials {
       errors_.push_back(error_m);
     }
     char text[300];
-    std::snprintf(text, sizeof(text), ",%d,%.5f,%.5f,%.5f,%.5f,%.2f,%.4f,%.4f,%.4f,%.4f,%s,",
+    std::snprintf(text, sizeof(text), ",%d,%.5f,%.5f,%.5f,%.5f,%.2f,%.4f,%.4f,%.4f,%.4f,%.2f,%s,",
                   answer.localized ? 1 : 0, error_m, error_deg,
                   std::sqrt(answer.covariance.topLeftCorner<3, 3>().trace()),
                   std::sqrt(answer.covariance.bottomRightCorner<3, 3>().trace()) / kRadians, ms,
                   answer.score.fit, answer.score.overlap, answer.score.seen_through, answer.margin,
-                  answer.origin.c_str());
+                  answer.lead, answer.origin.c_str());
     return std::filesystem::path(files_[number]).filename().string() + Row(truth) + Row(guess) +
            Row(answer.pose) + text + answer.reason;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include <Eigen/Core>
@@ -32,5 +33,14 @@ inline Cube CubeOf(const Eigen::Vector3f& point, float inverse_size) {
 inline std::uint64_t CubeKey(const Eigen::Vector3f& point, float inverse_size) {
   return CubeKey(CubeOf(point, inverse_size));
 }
+
+/// For hash tables whose size is a power of two: neighbouring keys differ in few bits.
+struct CubeHash {
+  std::size_t operator()(std::uint64_t key) const {
+    key ^= key >> 31U;
+    key *= 0x9E3779B97F4A7C15ULL;
+    return key ^ (key >> 32U);
+  }
+};
 
 }  // namespace hv

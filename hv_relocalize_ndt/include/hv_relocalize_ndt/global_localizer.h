@@ -40,7 +40,8 @@ struct LocalizationResult {
   Pose T_map_scan = Pose::Identity();
   Matrix6d covariance = Matrix6d::Zero();  ///< of a right perturbation, translation then rotation
   PlaceScore score;
-  double margin = 0.0;  ///< of the score over that of the best other place
+  double margin = 0.0;  ///< of the score over that of the best other place; 1 without any
+  double lead = 0.0;    ///< the same in standard deviations of chance; infinite without any
   std::vector<LocalizationCandidate> candidates;  ///< distinct places, best first
 };
 
@@ -57,12 +58,13 @@ class GlobalLocalizer {
 
  private:
   struct Scan;
-  Scan Prepare(const LocalizationQuery& query) const;
   std::vector<LocalizationCandidate> Propose(const LocalizationQuery& query,
                                              const Scan& scan) const;
   PoseWindow WindowFor(const LocalizationQuery& query, const Scan& scan) const;
+  std::vector<LocalizationCandidate> ProposeByDescriptors(const Scan& scan) const;
   void Refine(const Scan& scan, std::vector<LocalizationCandidate>& candidates) const;
-  void Decide(const Scan& scan, LocalizationResult& result) const;
+  void Measure(const Scan& scan, LocalizationResult& result) const;
+  std::string WhyNot(const LocalizationResult& result) const;
 
   RelocalizeConfig config_;
   const PriorMap& map_;

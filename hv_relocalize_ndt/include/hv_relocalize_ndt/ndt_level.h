@@ -5,7 +5,9 @@
 #include <vector>
 
 #include <tsl/robin_map.h>
+
 #include <Eigen/Core>
+#include "hv_core/cube_key.h"
 
 namespace hv::relocalize {
 
@@ -54,7 +56,7 @@ class NdtLevel {
   float inverse_size_;
   std::vector<NdtVoxel> voxels_;
   std::vector<Neighbors> neighbors_;
-  tsl::robin_map<std::uint64_t, std::uint32_t> cubes_;  ///< with a voxel beside
+  tsl::robin_map<std::uint64_t, std::uint32_t, CubeHash> cubes_;  ///< with a voxel beside
 };
 
 }  // namespace hv::relocalize

@@ -40,8 +40,14 @@ class PlaceJudge {
 
   PlaceScore Judge(const Pose& T_map_scan) const;
 
+  /// How much better one pose fits than another, in standard deviations of chance: only surfaces
+  /// that fit at one of the two and not at the other tell them apart, and without a difference
+  /// either is as likely (McNemar's test).
+  double Lead(const Pose& T_map_scan, const Pose& T_map_scan_other) const;
+
  private:
-  bool Lies(const NdtVoxel& surface, const Eigen::Isometry3f& T_map_scan, bool& known) const;
+  enum class Place { kUnknown, kOff, kOn };
+  Place PlaceOf(const NdtVoxel& surface, const Eigen::Isometry3f& T_map_scan) const;
 
   const PlaceScoreConfig& config_;
   const NdtLevel& map_;

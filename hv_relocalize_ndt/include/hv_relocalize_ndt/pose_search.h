@@ -13,10 +13,10 @@ struct PoseSearchConfig {
   double cell_m = 0.5;
   int depth = 5;
   double max_range_m = 20.0;
-  int max_cells = 300;
+  int max_cells = 150;
   double level_share = 0.2;
-  int max_hypotheses = 12;
-  double min_score_share = 0.6;
+  int max_hypotheses = 8;
+  double min_score_share = 0.8;
   double same_place_m = 1.5;
   double same_heading_deg = 15.0;
   int max_nodes = 400000;

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "hv_core/map_folder.h"
+#include "hv_loop_btc/btc_database.h"
 #include "hv_loop_btc/saved_session.h"
 #include "hv_relocalize_ndt/ndt_level.h"
 #include "hv_relocalize_ndt/relocalize_config.h"
@@ -37,13 +38,24 @@ class PriorMap {
   /// Keyframes and descriptors; none for a plain cloud.
   const std::optional<loop::SavedSession>& session() const { return session_; }
 
+  /// Poses in the map at which the descriptors of its submaps resemble that of a scan, best first;
+  /// none for a map without descriptors. `points` with the sensor at the origin [m], `up` against
+  /// gravity.
+  std::vector<Pose> PlacesLike(const std::vector<Eigen::Vector3f>& points,
+                               const Eigen::Vector3d& up) const;
+
  private:
   std::string name_;
   std::vector<Eigen::Vector3f> points_;
   std::vector<NdtLevel> levels_;
   std::unique_ptr<NdtLevel> surfaces_;
   std::unique_ptr<StructureGrid> structure_;
+  void UseSession(loop::SavedSession session);
+
+  RelocalizeConfig config_;
   std::optional<loop::SavedSession> session_;
+  std::unique_ptr<loop::BtcDatabase> descriptors_;
+  std::vector<Pose> T_map_submap_;  ///< of each descriptor
 };
 
 }  // namespace hv::relocalize

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hv_core/config.h"
+#include "hv_loop_btc/btc_descriptor.h"
 #include "hv_relocalize_ndt/ndt_registration.h"
 #include "hv_relocalize_ndt/place_score.h"
 #include "hv_relocalize_ndt/pose_search.h"
@@ -9,10 +10,10 @@ namespace hv::relocalize {
 
 /// When a place counts as found.
 struct AcceptanceConfig {
-  double min_fit = 0.6;
+  double min_fit = 0.75;
   double min_overlap = 0.7;
   double max_seen_through = 0.1;
-  double margin = 0.08;
+  double min_lead = 2.5;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
@@ -24,6 +25,8 @@ struct RelocalizeConfig {
   PoseSearchConfig search;
   PlaceScoreConfig score;
   AcceptanceConfig accept;
+  loop::BtcConfig btc;
+  int descriptor_candidates = 5;
   double guess_radius_m = 18.0;
   double guess_heading_deg = 25.0;
   double covariance_scale = 20.0;

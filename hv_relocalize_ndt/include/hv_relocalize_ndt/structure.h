@@ -61,9 +61,12 @@ class StructureGrid {
 
   /// What the cubes [cell, cell + 2^level) hold.
   StructureBits At(int level, const Eigen::Vector3i& cell) const {
-    const Eigen::Vector3i padded = cell + Eigen::Vector3i::Constant(padding_);
-    if ((padded.array() < 0).any() || (padded.array() >= padded_size_.array()).any()) return 0;
-    return levels_[static_cast<std::size_t>(level)][Index(padded)];
+    return Value(levels_[static_cast<std::size_t>(level)], cell);
+  }
+
+  /// Whether a sensor can be in one of the cubes [cell, cell + 2^level): there is a floor below.
+  bool CanStand(int level, const Eigen::Vector3i& cell) const {
+    return Value(standing_[static_cast<std::size_t>(level)], cell) != 0;
   }
 
  private:
@@ -73,7 +76,16 @@ class StructureGrid {
                static_cast<std::size_t>(padded_size_.x()) +
            static_cast<std::size_t>(padded.x());
   }
-  void Widen(int step, const std::vector<StructureBits>& from, std::vector<StructureBits>& to);
+  StructureBits Value(const std::vector<StructureBits>& grid, const Eigen::Vector3i& cell) const {
+    const Eigen::Vector3i padded = cell + Eigen::Vector3i::Constant(padding_);
+    if ((padded.array() < 0).any() || (padded.array() >= padded_size_.array()).any()) return 0;
+    return grid[Index(padded)];
+  }
+  void SetSize(const NdtLevel& surfaces);
+  std::vector<StructureBits> PlacesToStand() const;
+  std::vector<std::vector<StructureBits>> Windows(std::vector<StructureBits> finest,
+                                                  int depth) const;
+  void Widen(int step, std::vector<StructureBits>& grid) const;
 
   double cell_m_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
@@ -81,6 +93,7 @@ class StructureGrid {
   int padding_ = 0;  ///< cubes before the map on each axis, for windows that reach into it
   Eigen::Vector3i padded_size_ = Eigen::Vector3i::Zero();
   std::vector<std::vector<StructureBits>> levels_;
+  std::vector<std::vector<StructureBits>> standing_;
 };
 
 }  // namespace hv::relocalize
