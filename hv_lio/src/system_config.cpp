@@ -52,7 +52,7 @@ void SystemConfig::Describe(ConfigVisitor& visitor) {
   visitor.Foreign("loop");
   visitor.Foreign("map");
   visitor.Foreign("mapping");
-  visitor.Foreign("relocalize");
+  visitor.Foreign("localization");
 }
 
 void SystemConfig::Validate(ConfigProblems& problems) const {

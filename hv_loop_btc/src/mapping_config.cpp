@@ -33,7 +33,7 @@ void MappingConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("loop", loop, "loop closing");
   visitor.Section("map", map, "what is made of the keyframes when a map is saved");
   visitor.Section("mapping", mapping, "what the loop closing node publishes");
-  for (const char* section : {"input", "points", "odometry", "output", "relocalize"}) {
+  for (const char* section : {"input", "points", "odometry", "output", "localization"}) {
     visitor.Foreign(section);
   }
 }

@@ -43,11 +43,11 @@ void RelocalizeConfig::Validate(ConfigProblems& problems) const {
   score.Validate(problems);
   accept.Validate(problems);
   btc.Validate(problems);
-  problems.Require(descriptor_candidates >= 0, "relocalize.descriptor_candidates",
+  problems.Require(descriptor_candidates >= 0, "localization.descriptor_candidates",
                    "must not be negative");
-  problems.Require(guess_radius_m > 0.0, "relocalize.guess_radius_m", "must be positive");
-  problems.Require(guess_heading_deg > 0.0, "relocalize.guess_heading_deg", "must be positive");
-  problems.Require(covariance_scale > 0.0, "relocalize.covariance_scale", "must be positive");
+  problems.Require(guess_radius_m > 0.0, "localization.guess_radius_m", "must be positive");
+  problems.Require(guess_heading_deg > 0.0, "localization.guess_heading_deg", "must be positive");
+  problems.Require(covariance_scale > 0.0, "localization.covariance_scale", "must be positive");
 }
 
 }  // namespace hv::relocalize

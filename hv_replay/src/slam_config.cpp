@@ -7,7 +7,7 @@ void SlamConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("loop", loop, "loop closing");
   visitor.Section("map", map, "what is made of the keyframes when a map is saved");
   visitor.Section("mapping", mapping, "what the loop closing node publishes");
-  visitor.Section("relocalize", relocalize, "localisation in a saved map");
+  visitor.Section("localization", localization, "localisation in a saved map");
 }
 
 void SlamConfig::Validate(ConfigProblems& problems) const {
@@ -15,7 +15,7 @@ void SlamConfig::Validate(ConfigProblems& problems) const {
   loop.Validate(problems);
   map.Validate(problems);
   mapping.Validate(problems);
-  relocalize.Validate(problems);
+  localization.Validate(problems);
 }
 
 }  // namespace hv::replay

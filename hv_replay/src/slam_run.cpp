@@ -1,33 +1,17 @@
 #include "hv_replay/slam_run.h"
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
-#include <fstream>
+#include <utility>
 
-#include "hv_core/error.h"
 #include "hv_core/memory.h"
 #include "hv_replay/plot.h"
+#include "hv_replay/result_files.h"
 
 namespace hv::replay {
 namespace {
 
 /// Every n-th point of a scan goes into the picture of the map.
 constexpr std::size_t kPictureStride = 7;
-
-std::string CreateDirectory(const std::string& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (error) throw InputError(path + ": cannot be created (" + error.message() + ")");
-  return path;
-}
-
-void WriteText(const std::string& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text;
-  file.close();
-  if (!file) throw InputError(path + ": cannot be written");
-}
 
 double Quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
@@ -41,13 +25,6 @@ double Mean(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-/// What is wrong with a bag or the scans is told once a cause, on standard error.
-void Warn(const std::string& line) { std::fprintf(stderr, "hv_slam: %s\n", line.c_str()); }
-
-ImuNeed NeedOf(const lio::SystemConfig& config) {
-  return config.odometry.use_imu ? ImuNeed::kRequired : ImuNeed::kIgnored;
 }
 
 std::string TimingRow(const lio::ScanResult& result) {
@@ -99,10 +76,7 @@ SlamRun::SlamRun(const SlamConfig& config, const std::vector<std::string>& bags,
     : config_(config),
       out_dir_(CreateDirectory(out_dir)),
       options_(options),
-      reader_(bags, {config.system.input.points_topic, config.system.input.imu_topic},
-              NeedOf(config.system)),
-      decoder_(config.system.points),
-      pipeline_(config.system.odometry),
+      odometry_(config.system, bags, "hv_slam"),
       timing_(out_dir + "/timing.csv",
               "stamp,preprocess_ms,update_ms,map_ms,total_ms,voxels,rss_mb"),
       covariance_(out_dir + "/covariance.csv",
@@ -114,50 +88,12 @@ SlamRun::SlamRun(const SlamConfig& config, const std::vector<std::string>& bags,
 
 SlamRunSummary SlamRun::Run() {
   WriteText(out_dir_ + "/config.yaml", ToYaml(config_));
-  BagHandlers handlers;
-  handlers.points = [this](const BagCloud& cloud) {
-    AddCloud(cloud);
-    return true;
-  };
-  handlers.imu = [this](const BagImu& imu) {
-    AddImu(imu);
-    return true;
-  };
-  summary_.error = reader_.Read(handlers, "odometry").error;
-  Drain(true);
-  summary_.counters = pipeline_.counters();
+  summary_.odometry =
+      odometry_.Run([this](lio::ScanResult result) { Take(std::move(result)); }, "odometry");
   const Trajectory odometry(poses_);
   summary_.path_length_m = odometry.PathLength();
-  if (decoder_.time_layout()) summary_.time_layout = decoder_.time_layout()->ToString();
   WriteResults(odometry);
   return summary_;
-}
-
-void SlamRun::AddCloud(const BagCloud& cloud) {
-  const auto begin = std::chrono::steady_clock::now();
-  DecodedScan decoded = decoder_.Decode(cloud.view);
-  const std::chrono::duration<double, std::milli> decode_time =
-      std::chrono::steady_clock::now() - begin;
-  if (!decoded.error.empty()) {
-    ++summary_.clouds_unusable;
-    if (decoded.error != last_decode_error_) {
-      Warn("cloud at " + ToString(cloud.view.stamp) + ": " + decoded.error);
-    }
-    last_decode_error_ = decoded.error;
-  }
-  pipeline_.AddScan(std::move(decoded.scan), decode_time.count());
-  Drain(false);
-}
-
-void SlamRun::AddImu(const BagImu& imu) {
-  pipeline_.AddImu(imu.sample);
-  Drain(false);
-}
-
-void SlamRun::Drain(bool flush) {
-  while (auto result = flush ? pipeline_.Flush() : pipeline_.ProcessNext())
-    Take(std::move(*result));
-  for (const std::string& event : pipeline_.TakeEvents()) Warn(event);
 }
 
 void SlamRun::Take(lio::ScanResult result) {
@@ -196,10 +132,10 @@ void SlamRun::WriteResults(const Trajectory& odometry) {
 JsonObject SummaryJson(const SlamRunSummary& summary) {
   JsonObject statuses;
   for (const auto& [status, count] : summary.scans_by_status) statuses.AddCount(status, count);
-  const lio::PipelineCounters& counters = summary.counters;
+  const lio::PipelineCounters& counters = summary.odometry.counters;
   JsonObject input;
   input.AddCount("scans", counters.scans)
-      .AddCount("clouds_unusable", summary.clouds_unusable)
+      .AddCount("clouds_unusable", summary.odometry.clouds_unusable)
       .AddCount("imu_samples", counters.imu_samples)
       .AddCount("imu_gaps", counters.imu_gaps)
       .AddCount("imu_out_of_order", counters.imu_out_of_order)
@@ -214,9 +150,9 @@ JsonObject SummaryJson(const SlamRunSummary& summary) {
       .AddCount("degenerate_scans", summary.degenerate_scans)
       .Add("scan_ms", TimesJson(summary.total_ms))
       .Add("input", input)
-      .Add("point_time", summary.time_layout)
+      .Add("point_time", summary.odometry.time_layout)
       .Add("resident_mb", ResidentMegabytes())
-      .Add("error", summary.error);
+      .Add("error", summary.odometry.error);
   return json;
 }
 

@@ -42,7 +42,7 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--seed", trials.seed, "of the perturbations")->capture_default_str();
   app.add_option("--out", arguments.out, "CSV with one row a trial")->required();
   app.add_option("--config", arguments.config,
-                 "configuration (YAML); its section `relocalize` is used");
+                 "configuration (YAML); its section `localization` is used");
   app.add_flag("--json", arguments.json, "print the figures as one JSON object");
 }
 
@@ -74,15 +74,16 @@ int Run(Arguments arguments) {
     hv::ReadConfig(hv::LoadYamlFile(arguments.config), arguments.config, config);
   }
   if (!arguments.resolutions_m.empty()) {
-    config.relocalize.ndt.resolutions_m = arguments.resolutions_m;
+    config.localization.relocalize.ndt.resolutions_m = arguments.resolutions_m;
     hv::ConfigProblems problems;
-    config.relocalize.Validate(problems);
+    config.localization.Validate(problems);
     if (!problems.lines().empty()) throw hv::InputError(problems.lines().front());
   }
   if (!arguments.perturbation.empty()) {
     arguments.trials.perturbation = {arguments.perturbation[0], arguments.perturbation[1]};
   }
-  Print(hv::replay::TryRelocalization(arguments.trials, config.relocalize, arguments.out),
+  Print(hv::replay::TryRelocalization(arguments.trials, config.localization.relocalize,
+                                      arguments.out),
         arguments.json);
   return 0;
 }

@@ -43,7 +43,7 @@ void Declare(CLI::App& app, Arguments& arguments) {
 }
 
 void PrintSummary(const hv::replay::SlamRunSummary& summary, const std::string& out) {
-  std::printf("%s\n", summary.time_layout.c_str());
+  std::printf("%s\n", summary.odometry.time_layout.c_str());
   for (const auto& [status, count] : summary.scans_by_status) {
     std::printf("scans %-14s %zu\n", status.c_str(), count);
   }
@@ -75,7 +75,7 @@ int Run(const Arguments& arguments) {
   } else {
     PrintSummary(summary, arguments.out);
   }
-  if (!summary.error.empty()) throw hv::InputError(summary.error);
+  if (!summary.odometry.error.empty()) throw hv::InputError(summary.odometry.error);
   if (summary.total_ms.empty()) throw hv::InputError("no scan could be tracked");
   return 0;
 }

@@ -27,8 +27,7 @@ std::string Calibration(const RecordingConfig& config, const Pose& T_imu_lidar) 
   text << std::setprecision(12) << "# Pose of the LiDAR in the IMU frame.\n"
        << "extrinsic:\n"
        << "  translation_m: [" << t.x() << ", " << t.y() << ", " << t.z() << "]\n"
-       << "  rotation_xyzw: [" << q.x() << ", " << q.y() << ", " << q.z() << ", " << q.w()
-       << "]\n"
+       << "  rotation_xyzw: [" << q.x() << ", " << q.y() << ", " << q.z() << ", " << q.w() << "]\n"
        << "# True errors of the IMU at " << imu.rate_hz
        << " Hz: densities per sqrt(Hz), bias walks per sqrt(s).\n"
        << "imu:\n"
@@ -64,8 +63,8 @@ std::unique_ptr<DatasetWriter> MakeDatasetWriter(const Recording& recording,
 DatasetSummary WriteDataset(const Recording& recording, const DatasetOptions& options) {
   const RecordingConfig& config = recording.config();
   const std::unique_ptr<DatasetWriter> writer = MakeDatasetWriter(recording, options.directory);
-  FaultInjector injector(options.faults, Time::FromSeconds(config.suite.epoch_s),
-                         static_cast<std::uint32_t>(config.seed) + 0xFA17U);
+  const Time start = Time::FromSeconds(config.suite.epoch_s);
+  FaultInjector injector(options.faults, start, static_cast<std::uint32_t>(config.seed) + 0xFA17U);
   DatasetSummary summary;
   std::vector<Time> scan_ends;
   const auto sink = [&](SensorMessage message) {
@@ -81,7 +80,8 @@ DatasetSummary WriteDataset(const Recording& recording, const DatasetOptions& op
   writer->Finish();
 
   const std::string directory = options.directory + "/";
-  WriteTum(directory + "truth.tum", recording.ImuTruth(scan_ends));
+  WriteTum(directory + "truth.tum",
+           TruthUnder(options.faults, start, recording.ImuTruth(scan_ends)));
   WriteText(directory + "calibration.yaml", Calibration(config, recording.rig().T_imu_lidar()));
   WriteText(directory + "simulation.yaml", ToYaml(config));
   summary.files = writer->files();

@@ -92,6 +92,15 @@ bool JumpClock(SensorMessage& message, const Context& context) {
   return true;
 }
 
+/// What happens in the time that is left out is never seen: the carrier is suddenly elsewhere.
+bool Kidnap(SensorMessage& message, const Context& context) {
+  if (context.time_s < context["start"]) return true;
+  if (context.time_s < context["start"] + context["by"]) return false;
+  ShiftStamps(message, -context["by"]);
+  message.arrival = message.arrival - context["by"];
+  return true;
+}
+
 bool OffsetLidar(SensorMessage& message, const Context& context) {
   if (ScanOf(message) != nullptr) ShiftStamps(message, context["offset"]);
   return true;
@@ -147,6 +156,8 @@ const std::vector<KnownFault>& KnownFaults() {
         {{"rate", 0.01}, {"by", 0.012}}}, Unsort},
       {{"clock_jump", "all stamps shift by offset [s] from start on",
         {{"start", 20.0}, {"offset", 5.0}}}, JumpClock},
+      {{"kidnap", "from start on, the sensors are where they would be by [s] later",
+        {{"start", 20.0}, {"by", 30.0}}}, Kidnap},
       {{"lidar_offset", "LiDAR stamps are off by [s]", {{"offset", 0.02}}}, OffsetLidar},
       {{"nan_points", "points become NaN with probability rate", {{"rate", 0.05}}}, SpoilPoints},
       {{"empty_scans", "scans lose all points with probability rate", {{"rate", 0.05}}},
@@ -231,6 +242,23 @@ bool FaultInjector::Apply(SensorMessage& message) {
     if (!fault->effect(message, {fault->parameters, time_s, fault->random})) return false;
   }
   return true;
+}
+
+Trajectory TruthUnder(const std::vector<Fault>& faults, Time start, const Trajectory& truth) {
+  std::vector<StampedPose> poses = truth.poses();
+  for (const Fault& fault : faults) {
+    if (fault.name != "kidnap") continue;
+    const Time from = start + fault.parameters.at("start");
+    const double by = fault.parameters.at("by");
+    std::vector<StampedPose> kept;
+    for (StampedPose pose : poses) {
+      if (!(pose.stamp < from) && pose.stamp < from + by) continue;
+      if (!(pose.stamp < from)) pose.stamp = pose.stamp - by;
+      kept.push_back(pose);
+    }
+    poses = std::move(kept);
+  }
+  return Trajectory(std::move(poses));
 }
 
 void TruncateIfAsked(const std::vector<Fault>& faults, const std::string& path) {

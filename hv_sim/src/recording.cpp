@@ -33,6 +33,7 @@ void RecordingConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("world", world, "name of a world or path of a map_server YAML");
   visitor.Field("format", format, "hilti, nclt or robot");
   visitor.Field("seed", seed, "of clutter, motion and noise");
+  visitor.Field("world_seed", world_seed, "of clutter; below 0: as seed");
   visitor.Section("motion", motion, "trajectory of the carrier");
   visitor.Field("lidar_noise", lidar_noise, "range noise and mixed pixels");
   visitor.Field("people", people, "people walk around");

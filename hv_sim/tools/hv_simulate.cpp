@@ -29,6 +29,7 @@ struct Arguments {
   double duration_s = 60.0;
   double skip_s = 0.0;
   int seed = 1;
+  int world_seed = -1;
   std::string out;
   std::string config;
   std::vector<std::string> faults;
@@ -65,8 +66,7 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--world", arguments.world,
                  "one of " + Join(hv::sim::WorldNames()) + "; or the YAML of a floor plan")
       ->capture_default_str();
-  app.add_option("--trajectory", arguments.trajectory,
-                 "one of " + Join(hv::sim::MotionStyles()))
+  app.add_option("--trajectory", arguments.trajectory, "one of " + Join(hv::sim::MotionStyles()))
       ->capture_default_str();
   app.add_option("--format", arguments.formats,
                  "one or more of " + Join(hv::sim::FormatNames()) + ", separated by commas")
@@ -78,6 +78,9 @@ void Declare(CLI::App& app, Arguments& arguments) {
                  "leaves out the first seconds; more than 2 starts in motion [s]")
       ->capture_default_str();
   app.add_option("--seed", arguments.seed, "of clutter, motion and noise")->capture_default_str();
+  app.add_option("--world-seed", arguments.world_seed,
+                 "of clutter alone, for another run in the same world; below 0: as --seed")
+      ->capture_default_str();
   app.add_option("--out", arguments.out, "directory for the results")->required();
   app.add_option("--config", arguments.config,
                  "YAML with further settings, as simulation.yaml of an earlier run");
@@ -111,6 +114,7 @@ RecordingConfig MakeConfig(const CLI::App& app, const Arguments& arguments,
   if (given("--duration")) config.motion.duration_s = arguments.duration_s;
   if (given("--skip")) config.motion.skip_s = arguments.skip_s;
   if (given("--seed")) config.seed = arguments.seed;
+  if (given("--world-seed")) config.world_seed = arguments.world_seed;
   if (given("--point-share")) config.point_share = arguments.point_share;
   if (arguments.no_people) config.people = false;
   if (arguments.no_noise) config.lidar_noise = config.suite.imu.noise = false;
@@ -140,8 +144,7 @@ struct Result {
 
 Result Simulate(const RecordingConfig& config, const Arguments& arguments) {
   const auto begin = std::chrono::steady_clock::now();
-  const hv::sim::World world =
-      hv::sim::MakeWorld(config.world, static_cast<std::uint32_t>(config.seed));
+  const hv::sim::World world = hv::sim::MakeWorld(config.world, config.clutter_seed());
   const hv::sim::Recording recording(world, config);
   DatasetOptions options;
   options.directory = arguments.out;

@@ -19,7 +19,7 @@ struct AcceptanceConfig {
   void Validate(ConfigProblems& problems) const;
 };
 
-/// Everything that relocalisation can be told. Section `relocalize` of the configuration file.
+/// Everything that relocalisation can be told.
 struct RelocalizeConfig {
   NdtConfig ndt;
   PoseSearchConfig search;

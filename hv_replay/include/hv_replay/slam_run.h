@@ -6,29 +6,24 @@
 #include <string>
 #include <vector>
 
-#include "hv_core/point_cloud_decoder.h"
 #include "hv_core/trajectory.h"
-#include "hv_lio/pipeline.h"
-#include "hv_replay/bag_reader.h"
 #include "hv_replay/csv_log.h"
 #include "hv_replay/drift_injector.h"
 #include "hv_replay/json.h"
 #include "hv_replay/loop_run.h"
 #include "hv_replay/map_picture.h"
+#include "hv_replay/odometry_run.h"
 #include "hv_replay/slam_config.h"
 
 namespace hv::replay {
 
 /// What a run of odometry over bags has produced so far.
 struct SlamRunSummary {
+  OdometryRunSummary odometry;
   std::map<std::string, std::size_t> scans_by_status;
-  std::size_t clouds_unusable = 0;
   std::size_t degenerate_scans = 0;
   std::vector<double> total_ms;  ///< of tracked scans
   double path_length_m = 0.0;
-  std::string time_layout;
-  std::string error;  ///< why reading ended early, empty when it did not
-  lio::PipelineCounters counters;
   std::optional<LoopRunSummary> loops;  ///< nullopt without loop closing
 };
 
@@ -50,13 +45,10 @@ class SlamRun {
   /// Runs to the end of the bags and writes odometry.tum, timing.csv (a row a scan), covariance.csv
   /// (position and rotation covariance in odom axes, number of degenerate directions),
   /// summary.json, config.yaml, the results of LoopRun and the pictures. A damaged bag ends the run
-  /// early: what was finished is written, and the summary's `error` says why.
+  /// early: what was finished is written, and the summary says why.
   SlamRunSummary Run();
 
  private:
-  void AddCloud(const BagCloud& cloud);
-  void AddImu(const BagImu& imu);
-  void Drain(bool flush);
   void Take(lio::ScanResult result);
   void AddToPicture(const lio::ScanResult& result);
   void WriteResults(const Trajectory& odometry);
@@ -64,9 +56,7 @@ class SlamRun {
   SlamConfig config_;
   std::string out_dir_;
   SlamRunOptions options_;
-  BagReader reader_;
-  PointCloudDecoder decoder_;
-  lio::Pipeline pipeline_;
+  OdometryRun odometry_;
   CsvLog timing_;
   CsvLog covariance_;
   std::vector<StampedPose> poses_;  ///< in order of processing; a clock may have jumped back
@@ -74,7 +64,6 @@ class SlamRun {
   std::optional<DriftInjector> drift_;
   MapPicture picture_;
   SlamRunSummary summary_;
-  std::string last_decode_error_;
 };
 
 /// The summary as JSON, for summary.json and `--json`.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hv_core/trajectory.h"
 #include "hv_sim/recording.h"
 
 namespace hv::sim {
@@ -43,6 +44,9 @@ class FaultInjector {
   struct Active;
   std::vector<std::unique_ptr<Active>> active_;
 };
+
+/// The truth of a stream that was damaged: a `kidnap` leaves out its stretch.
+Trajectory TruthUnder(const std::vector<Fault>& faults, Time start, const Trajectory& truth);
 
 /// Cuts the file to the share that a `truncated_bag` fault keeps, if `faults` has one. Throws
 /// InputError when the file cannot be cut.

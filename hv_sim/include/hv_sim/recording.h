@@ -29,6 +29,7 @@ struct RecordingConfig {
   std::string world = "construction";  ///< see MakeWorld()
   std::string format = "hilti";        ///< see DefaultSuite()
   int seed = 1;                        ///< of clutter, motion and every noise
+  int world_seed = -1;                 ///< of clutter; below 0: as `seed`
   MotionConfig motion;
   bool lidar_noise = true;
   bool people = true;
@@ -36,6 +37,10 @@ struct RecordingConfig {
   double point_share = 1.0;    ///< share of columns fired
   SensorSuiteConfig suite;
 
+  /// Seed of the clutter.
+  std::uint32_t clutter_seed() const {
+    return static_cast<std::uint32_t>(world_seed < 0 ? seed : world_seed);
+  }
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
 };

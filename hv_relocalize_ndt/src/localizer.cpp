@@ -1,0 +1,184 @@
+#include "hv_relocalize_ndt/localizer.h"
+
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+namespace hv::relocalize {
+namespace {
+
+constexpr double kRadians = M_PI / 180.0;
+/// Levels finer than this follow a pose that is known.
+constexpr double kTrackingBasin_m = 4.0;
+
+/// The scan in a frame with the axes of the IMU and the origin of the LiDAR, from which surfaces
+/// are seen.
+std::vector<Eigen::Vector3f> SeenFromLidar(const TrackedScan& scan) {
+  const Eigen::Vector3f origin = scan.lidar_in_imu.cast<float>();
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(scan.points.size());
+  for (const Eigen::Vector3f& point : scan.points) points.push_back(point - origin);
+  return points;
+}
+
+Pose Shift(const Eigen::Vector3d& translation) {
+  return MakePose(Eigen::Matrix3d::Identity(), translation);
+}
+
+}  // namespace
+
+const char* ToString(LocalizerState state) {
+  switch (state) {
+    case LocalizerState::kLost:
+      return "lost";
+    case LocalizerState::kDeadReckoning:
+      return "dead reckoning";
+    case LocalizerState::kTracking:
+      return "tracking";
+  }
+  return "";
+}
+
+Localizer::Localizer(const LocalizerConfig& config, const PriorMap& map)
+    : config_(config),
+      map_(map),
+      global_(config.relocalize, map),
+      registration_(config.relocalize.ndt),
+      filter_(config.tracking) {}
+
+LocalizerUpdate Localizer::Add(const TrackedScan& scan) {
+  update_ = LocalizerUpdate();
+  Follow(scan);
+  const TrackingConfig& tracking = config_.tracking;
+  if (guess_ || (state_ == LocalizerState::kLost && Due(scan.stamp, tracking.search_period_s))) {
+    Search(scan);
+  } else if (state_ != LocalizerState::kLost &&
+             (contradictions_ > 0 || Due(scan.stamp, tracking.period_s))) {
+    Register(scan);
+  }
+  return Taken();
+}
+
+LocalizerUpdate Localizer::Wait(Time now) {
+  update_ = LocalizerUpdate();
+  if (state_ != LocalizerState::kLost && last_scan_ &&
+      now - *last_scan_ > config_.tracking.silence_s) {
+    Lose("no scan");
+  }
+  return Taken();
+}
+
+bool Localizer::Due(Time stamp, double period_s) const {
+  constexpr double kJitter_s = 0.02;
+  return !last_comparison_ || stamp - *last_comparison_ > period_s - kJitter_s ||
+         stamp < *last_comparison_;
+}
+
+/// Carries the pose along with odometry, where that is connected.
+void Localizer::Follow(const TrackedScan& scan) {
+  const double elapsed_s = last_scan_ ? scan.stamp - *last_scan_ : 0.0;
+  const bool connected = last_scan_ && scan.segment == segment_;
+  if (state_ != LocalizerState::kLost) {
+    if (!connected) {
+      Lose("odometry started anew");
+    } else if (elapsed_s > config_.tracking.silence_s || elapsed_s < 0.0) {
+      Lose("no scan for a while");
+    } else {
+      filter_.Predict(scan.T_odom_imu, elapsed_s);
+    }
+  }
+  last_scan_ = scan.stamp;
+  segment_ = scan.segment;
+}
+
+void Localizer::Lose(std::string reason) {
+  state_ = LocalizerState::kLost;
+  reason_ = std::move(reason);
+  contradictions_ = 0;
+  last_comparison_.reset();
+}
+
+/// Looks for the place of the scan: near the guess, or anywhere.
+void Localizer::Search(const TrackedScan& scan) {
+  LocalizationQuery query;
+  query.points = SeenFromLidar(scan);
+  query.up = scan.T_odom_imu.linear().row(2);
+  const Pose T_imu_scan = Shift(scan.lidar_in_imu);
+  if (guess_) query.T_map_scan_guess = *guess_ * T_imu_scan;
+  const LocalizationResult found = global_.Locate(query);
+  guess_.reset();
+  last_comparison_ = scan.stamp;
+  update_.registered = update_.searched = true;
+  update_.score = found.score;
+  if (!found.localized) {
+    if (state_ == LocalizerState::kLost) reason_ = found.reason;
+    return;
+  }
+  const Matrix6d transport = se3::Adjoint(T_imu_scan);
+  filter_.Start(scan.T_odom_imu, found.T_map_scan * T_imu_scan.inverse(),
+                transport * found.covariance * transport.transpose());
+  state_ = LocalizerState::kTracking;
+  reason_.clear();
+  contradictions_ = 0;
+}
+
+/// Compares the scan with the map where the robot is believed to be.
+void Localizer::Register(const TrackedScan& scan) {
+  const TrackingConfig& tracking = config_.tracking;
+  last_comparison_ = scan.stamp;
+  const Pose T_imu_scan = Shift(scan.lidar_in_imu);
+  const std::vector<Eigen::Vector3f> points = SeenFromLidar(scan);
+  const NdtSource source(config_.relocalize.ndt, points);
+  const NdtLevel surfaces(map_.surfaces().resolution_m(), points);
+  const PlaceJudge judge(config_.relocalize.score, map_.surfaces(), surfaces, points,
+                         scan.T_odom_imu.linear().row(2));
+  std::vector<const NdtLevel*> levels;
+  for (const NdtLevel* level : map_.Levels()) {
+    const bool fine = level->resolution_m() < kTrackingBasin_m || level == map_.Levels().back();
+    if (fine) levels.push_back(level);
+  }
+  const NdtResult aligned = registration_.Align(levels, source, filter_.T_map_imu() * T_imu_scan);
+  update_.registered = true;
+  update_.score = judge.Judge(aligned.T_target_source);
+  if (update_.score.overlap < tracking.min_overlap) {
+    state_ = LocalizerState::kDeadReckoning;
+    reason_ = "the map does not show this place";
+    if (filter_.sigma_m() > tracking.max_sigma_m) Lose("too far without the map");
+    return;
+  }
+  const Matrix6d information = aligned.hessian + 1e-6 * Matrix6d::Identity();
+  Matrix6d covariance = config_.relocalize.covariance_scale *
+                        information.ldlt().solve(Matrix6d(Matrix6d::Identity()));
+  covariance.topLeftCorner<3, 3>().diagonal().array() +=
+      tracking.min_sigma_m * tracking.min_sigma_m;
+  const double least_rad = tracking.min_sigma_deg * kRadians;
+  covariance.bottomRightCorner<3, 3>().diagonal().array() += least_rad * least_rad;
+  const Matrix6d transport = se3::Adjoint(T_imu_scan);
+  covariance = transport * covariance * transport.transpose();
+  const Pose T_map_imu = aligned.T_target_source * T_imu_scan.inverse();
+  update_.innovation = filter_.Distance(T_map_imu, covariance);
+  const bool fits = update_.score.fit >= tracking.min_fit &&
+                    update_.score.seen_through <= tracking.max_seen_through;
+  const bool expected = update_.innovation < tracking.gate_sigmas * tracking.gate_sigmas;
+  if (fits && expected) {
+    filter_.Correct(T_map_imu, covariance);
+    state_ = LocalizerState::kTracking;
+    reason_.clear();
+    contradictions_ = 0;
+    return;
+  }
+  if (++contradictions_ < tracking.misses) return;
+  Lose(fits ? "the map says that the robot is elsewhere" : "what is seen contradicts the map");
+}
+
+LocalizerUpdate Localizer::Taken() {
+  update_.state = state_;
+  update_.reason = reason_;
+  update_.T_map_odom = filter_.T_map_odom();
+  update_.T_map_imu = filter_.T_map_imu();
+  update_.covariance = filter_.covariance();
+  return std::move(update_);
+}
+
+}  // namespace hv::relocalize

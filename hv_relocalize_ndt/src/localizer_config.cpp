@@ -1,0 +1,67 @@
+#include "hv_relocalize_ndt/localizer_config.h"
+
+namespace hv::relocalize {
+
+void TrackingConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Field("period_s", period_s, "between comparisons of a scan with the map [s]");
+  visitor.Field("search_period_s", search_period_s, "between searches while lost [s]");
+  visitor.Field("drift_translation", drift_translation,
+                "error of odometry's position, share of the distance");
+  visitor.Field("drift_rotation_deg", drift_rotation_deg, "error of its heading [deg/m]");
+  visitor.Field("drift_tilt_deg", drift_tilt_deg, "error of its vertical [deg/m]");
+  visitor.Field("waiting_m", waiting_m, "error of its position in a second [m]");
+  visitor.Field("tilt_sigma_deg", tilt_sigma_deg,
+                "standard deviation between the verticals of map and odometry [deg]");
+  visitor.Field("min_sigma_m", min_sigma_m,
+                "standard deviation of the best comparison, of the position [m]");
+  visitor.Field("min_sigma_deg", min_sigma_deg, "and of the rotation [deg]");
+  visitor.Field("min_overlap", min_overlap,
+                "share of the scan that must lie where the map knows anything, 0 to 1");
+  visitor.Field("min_fit", min_fit, "share of the scan that must fit, 0 to 1");
+  visitor.Field("max_seen_through", max_seen_through,
+                "share of the map in view that the scan may pass through, 0 to 1");
+  visitor.Field("gate_sigmas", gate_sigmas,
+                "standard deviations by which a comparison may differ from what is expected");
+  visitor.Field("misses", misses, "contradictions in a row after which the place is lost");
+  visitor.Field("max_sigma_m", max_sigma_m,
+                "standard deviation of the position at which it is lost outside of the map [m]");
+  visitor.Field("silence_s", silence_s, "time without scans after which the place is lost [s]");
+}
+
+void TrackingConfig::Validate(ConfigProblems& problems) const {
+  const auto positive = [&](double value, const char* key) {
+    problems.Require(value > 0.0, std::string("tracking.") + key, "must be positive");
+  };
+  const auto share = [&](double value, const char* key) {
+    problems.Require(value >= 0.0 && value <= 1.0, std::string("tracking.") + key,
+                     "must lie between 0 and 1");
+  };
+  positive(period_s, "period_s");
+  positive(search_period_s, "search_period_s");
+  positive(drift_translation, "drift_translation");
+  positive(drift_rotation_deg, "drift_rotation_deg");
+  positive(drift_tilt_deg, "drift_tilt_deg");
+  positive(waiting_m, "waiting_m");
+  positive(tilt_sigma_deg, "tilt_sigma_deg");
+  positive(min_sigma_m, "min_sigma_m");
+  positive(min_sigma_deg, "min_sigma_deg");
+  positive(gate_sigmas, "gate_sigmas");
+  positive(max_sigma_m, "max_sigma_m");
+  positive(silence_s, "silence_s");
+  share(min_overlap, "min_overlap");
+  share(min_fit, "min_fit");
+  share(max_seen_through, "max_seen_through");
+  problems.Require(misses >= 1, "tracking.misses", "must be at least 1");
+}
+
+void LocalizerConfig::Describe(ConfigVisitor& visitor) {
+  relocalize.Describe(visitor);
+  visitor.Section("tracking", tracking, "the pose in the map while the robot moves");
+}
+
+void LocalizerConfig::Validate(ConfigProblems& problems) const {
+  relocalize.Validate(problems);
+  tracking.Validate(problems);
+}
+
+}  // namespace hv::relocalize
