@@ -43,7 +43,7 @@ struct GlobalLocalizer::Scan {
   static Eigen::Vector3d UpOf(const LocalizationQuery& query, const NdtLevel& surfaces) {
     if (query.up) return query.up->normalized();
     Eigen::Vector3d guess = Eigen::Vector3d::UnitZ();
-    if (query.T_map_scan_guess) guess = query.T_map_scan_guess->linear().row(2);
+    if (query.guess) guess = query.guess->T_map_scan.linear().row(2);
     return EstimateUp(surfaces, guess);
   }
 
@@ -57,12 +57,15 @@ struct GlobalLocalizer::Scan {
 
 PoseWindow GlobalLocalizer::WindowFor(const LocalizationQuery& query, const Scan& scan) const {
   PoseWindow window;
-  if (query.T_map_scan_guess) {
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(config_.guess_radius_m);
-    window.low = query.T_map_scan_guess->translation() - reach;
-    window.high = query.T_map_scan_guess->translation() + reach;
-    window.yaw_rad = YawOf(query.T_map_scan_guess->linear() * scan.R_level_scan.transpose());
-    window.yaw_range_rad = config_.guess_heading_deg * kRadians;
+  if (query.guess) {
+    const PoseGuess& guess = *query.guess;
+    const double radius_m = guess.radius_m > 0.0 ? guess.radius_m : config_.guess_radius_m;
+    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(radius_m);
+    window.low = guess.T_map_scan.translation() - reach;
+    window.high = guess.T_map_scan.translation() + reach;
+    window.yaw_rad = YawOf(guess.T_map_scan.linear() * scan.R_level_scan.transpose());
+    window.yaw_range_rad =
+        guess.heading_rad > 0.0 ? guess.heading_rad : config_.guess_heading_deg * kRadians;
     return window;
   }
   const StructureGrid& grid = map_.structure();
@@ -75,14 +78,15 @@ PoseWindow GlobalLocalizer::WindowFor(const LocalizationQuery& query, const Scan
 std::vector<LocalizationCandidate> GlobalLocalizer::Propose(const LocalizationQuery& query,
                                                             const Scan& scan) const {
   std::vector<LocalizationCandidate> candidates;
-  if (query.T_map_scan_guess) {
-    candidates.push_back({*query.T_map_scan_guess, "guess", {}});
+  const PoseWindow window = WindowFor(query, scan);
+  if (query.guess) {
+    candidates.push_back({query.guess->T_map_scan, "guess", {}});
+  } else {
+    candidates = ProposeByDescriptors(scan);
   }
-  const std::vector<LocalizationCandidate> described = ProposeByDescriptors(scan);
-  candidates.insert(candidates.end(), described.begin(), described.end());
   const PoseSearch search(config_.search, map_.structure());
   const std::vector<PoseHypothesis> hypotheses =
-      search.Find(StructureCells(scan.surfaces, scan.R_level_scan), WindowFor(query, scan));
+      search.Find(StructureCells(scan.surfaces, scan.R_level_scan), window);
   for (const PoseHypothesis& hypothesis : hypotheses) {
     Pose T_map_scan = hypothesis.T_map_level;
     T_map_scan.linear() = T_map_scan.linear() * scan.R_level_scan;

@@ -105,7 +105,10 @@ void Localizer::Search(const TrackedScan& scan) {
   query.points = SeenFromLidar(scan);
   query.up = scan.T_odom_imu.linear().row(2);
   const Pose T_imu_scan = Shift(scan.lidar_in_imu);
-  if (guess_) query.T_map_scan_guess = *guess_ * T_imu_scan;
+  if (guess_) {
+    query.guess = *guess_;
+    query.guess->T_map_scan = guess_->T_map_scan * T_imu_scan;
+  }
   const LocalizationResult found = global_.Locate(query);
   guess_.reset();
   last_comparison_ = scan.stamp;

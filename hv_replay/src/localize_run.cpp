@@ -55,7 +55,7 @@ LocalizeRun::LocalizeRun(const SlamConfig& config, const std::string& map,
       log_(out_dir + "/localization.csv",
            "stamp,state,registered,searched,fit,overlap,seen_through,sigma_m,sigma_deg,innovation,"
            "ms,reason") {
-  if (guess) localizer_.SetGuess(*guess);
+  if (guess) localizer_.SetGuess({*guess});
 }
 
 LocalizeRunSummary LocalizeRun::Run() {

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <random>
+#include <set>
+#include <utility>
 
 #include "hv_core/error.h"
 #include "hv_core/map_folder.h"
@@ -95,6 +98,39 @@ std::vector<Pose> TruthInMap(const RelocalizeTrials& trials, std::size_t clouds)
   return truth;
 }
 
+/// The points with a share of the columns of the map exchanged among each other.
+std::vector<Eigen::Vector3f> Changed(std::vector<Eigen::Vector3f> points, double share,
+                                     std::uint32_t seed) {
+  constexpr float kColumn_m = 1.5F;
+  using Column = std::pair<int, int>;
+  const auto column_of = [](const Eigen::Vector3f& point) {
+    return Column(static_cast<int>(std::floor(point.x() / kColumn_m)),
+                  static_cast<int>(std::floor(point.y() / kColumn_m)));
+  };
+  std::set<Column> occupied;
+  for (const Eigen::Vector3f& point : points) occupied.insert(column_of(point));
+  std::vector<Column> from(occupied.begin(), occupied.end());
+  std::mt19937 random(seed);
+  std::shuffle(from.begin(), from.end(), random);
+  from.resize(static_cast<std::size_t>(share * static_cast<double>(from.size())));
+  std::map<Column, Column> target;
+  for (std::size_t i = 0; i < from.size(); ++i) target[from[i]] = from[(i + 1) % from.size()];
+  for (Eigen::Vector3f& point : points) {
+    const auto moved = target.find(column_of(point));
+    if (moved == target.end()) continue;
+    point.x() += kColumn_m * static_cast<float>(moved->second.first - moved->first.first);
+    point.y() += kColumn_m * static_cast<float>(moved->second.second - moved->first.second);
+  }
+  return points;
+}
+
+relocalize::PriorMap LoadMap(const RelocalizeTrials& trials,
+                             const relocalize::RelocalizeConfig& config) {
+  relocalize::PriorMap map = relocalize::PriorMap::Load(trials.map, config);
+  if (trials.changed_share <= 0.0) return map;
+  return {trials.map, Changed(map.points(), trials.changed_share, trials.seed), config};
+}
+
 struct Answer {
   bool localized = true;
   std::string reason;
@@ -114,7 +150,7 @@ class Trials {
         truth_(TruthInMap(trials, files_.size())),
         config_(config),
         started_(Clock::now()),
-        map_(relocalize::PriorMap::Load(trials.map, config)),
+        map_(LoadMap(trials, config)),
         load_ms_(MillisecondsSince(started_)),
         localizer_(config, map_),
         random_(trials.seed) {
@@ -149,7 +185,13 @@ class Trials {
       answer.origin = "guess";
       return answer;
     }
-    const relocalize::LocalizationResult result = localizer_.Locate({points, {}, guess});
+    relocalize::LocalizationQuery query;
+    query.points = points;
+    if (guess) {
+      query.guess = relocalize::PoseGuess{*guess, trials_.guess_radius_m,
+                                          trials_.guess_heading_deg * kRadians};
+    }
+    const relocalize::LocalizationResult result = localizer_.Locate(query);
     answer = {result.localized, result.reason, result.T_map_scan, result.covariance,
               result.score,     result.margin, result.lead,       ""};
     if (!result.candidates.empty()) answer.origin = result.candidates.front().origin;

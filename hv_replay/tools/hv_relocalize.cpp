@@ -59,7 +59,7 @@ Answer Localize(const hv::relocalize::GlobalLocalizer& localizer, const std::str
   for (const hv::Point& point : hv::ReadPointCloud(cloud).points) {
     query.points.emplace_back(point.x, point.y, point.z);
   }
-  query.T_map_scan_guess = guess;
+  if (guess) query.guess = hv::relocalize::PoseGuess{*guess};
   const auto start = std::chrono::steady_clock::now();
   answer.result = localizer.Locate(query);
   const std::chrono::duration<double, std::milli> elapsed =

@@ -17,6 +17,7 @@ namespace {
 struct Arguments {
   hv::replay::RelocalizeTrials trials;
   std::vector<double> perturbation;
+  std::vector<double> guess_window;
   std::vector<double> resolutions_m;
   std::string config;
   std::string out;
@@ -36,10 +37,16 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--perturb", arguments.perturbation,
                  "guesses this far from the truth [m] [deg]; without, no guess")
       ->expected(2);
+  app.add_option("--guess-window", arguments.guess_window,
+                 "how far from guesses is searched [m] [deg]; without, as configured")
+      ->expected(2);
   app.add_flag("--ndt-alone", trials.ndt_alone, "only the alignment from the guess");
   app.add_option("--resolutions", arguments.resolutions_m, "levels of the alignment [m]")
       ->expected(-1);
-  app.add_option("--seed", trials.seed, "of the perturbations")->capture_default_str();
+  app.add_option("--changed-share", trials.changed_share,
+                 "share of the columns of the map that change places before")
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--seed", trials.seed, "of perturbations and changes")->capture_default_str();
   app.add_option("--out", arguments.out, "CSV with one row a trial")->required();
   app.add_option("--config", arguments.config,
                  "configuration (YAML); its section `localization` is used");
@@ -81,6 +88,10 @@ int Run(Arguments arguments) {
   }
   if (!arguments.perturbation.empty()) {
     arguments.trials.perturbation = {arguments.perturbation[0], arguments.perturbation[1]};
+  }
+  if (!arguments.guess_window.empty()) {
+    arguments.trials.guess_radius_m = arguments.guess_window[0];
+    arguments.trials.guess_heading_deg = arguments.guess_window[1];
   }
   Print(hv::replay::TryRelocalization(arguments.trials, config.localization.relocalize,
                                       arguments.out),

@@ -14,6 +14,13 @@
 
 namespace hv::relocalize {
 
+/// About where a scan was taken.
+struct PoseGuess {
+  Pose T_map_scan = Pose::Identity();
+  double radius_m = 0.0;     ///< how far off it may be; 0: RelocalizeConfig::guess_radius_m
+  double heading_rad = 0.0;  ///< and its heading; 0: RelocalizeConfig::guess_heading_deg
+};
+
 /// What is to be found in a map.
 struct LocalizationQuery {
   /// One scan, or several as one cloud; the sensor was at the origin of their frame [m].
@@ -21,9 +28,7 @@ struct LocalizationQuery {
   /// Against gravity in that frame, where an IMU knows it. Else it is read off floors and walls,
   /// from the z axis, or that of the guess, to 30 deg.
   std::optional<Eigen::Vector3d> up;
-  /// About where the scan was taken (RelocalizeConfig::guess_radius_m, guess_heading_deg); without,
-  /// anywhere.
-  std::optional<Pose> T_map_scan_guess;
+  std::optional<PoseGuess> guess;  ///< without, anywhere
 };
 
 /// A pose that has been followed up.

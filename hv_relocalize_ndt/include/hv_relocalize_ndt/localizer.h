@@ -54,8 +54,12 @@ class Localizer {
  public:
   Localizer(const LocalizerConfig& config, const PriorMap& map);
 
-  /// About where the robot is now; the next scan starts there if it fits.
-  void SetGuess(const Pose& T_map_imu) { guess_ = T_map_imu; }
+  /// About where the IMU is now: PoseGuess::T_map_scan is its pose. The next scan is looked for
+  /// there.
+  void SetGuess(const PoseGuess& guess) { guess_ = guess; }
+
+  /// Forgets the place; the next scan is looked for anywhere.
+  void Forget() { Lose("asked to look anew"); }
 
   /// Takes the next scan, in order of time.
   LocalizerUpdate Add(const TrackedScan& scan);
@@ -76,7 +80,7 @@ class Localizer {
   GlobalLocalizer global_;
   NdtRegistration registration_;
   MapPoseFilter filter_;
-  std::optional<Pose> guess_;
+  std::optional<PoseGuess> guess_;
   LocalizerState state_ = LocalizerState::kLost;
   std::string reason_ = "not localised yet";
   std::optional<Time> last_scan_;

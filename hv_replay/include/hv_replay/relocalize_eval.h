@@ -24,7 +24,12 @@ struct RelocalizeTrials {
   };
   /// Guesses this far from the truth, in random directions; none: no guess.
   std::optional<Perturbation> perturbation;
+  double guess_radius_m = 0.0;     ///< in which a guess is searched; 0: as configured
+  double guess_heading_deg = 0.0;  ///< the same for its heading
   bool ndt_alone = false;  ///< the alignment from the guess alone, without search and refusal
+  /// Share of the map that has changed: so many of its columns of 1.5 m change places. Its
+  /// descriptors are not used then.
+  double changed_share = 0.0;
   std::uint32_t seed = 1;
 };
 
