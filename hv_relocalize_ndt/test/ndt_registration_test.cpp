@@ -4,7 +4,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 #include <Eigen/Eigenvalues>
 
 #include "known_hall.h"
@@ -132,16 +132,19 @@ TEST(NdtCostTest, ResultDoesNotDependOnThreads) {
     const Points more = AwayFromBorders(pose, 1.0, random);
     source.insert(source.end(), more.begin(), more.end());
   }
-  const auto evaluate = [&](std::size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return EvaluateNdt(level, kOutlierShare, source, pose);
+  // The slots of an arena decide how a sum is split up, however many threads are free.
+  const auto evaluate = [&](int threads) {
+    tbb::task_arena arena(threads);
+    return arena.execute([&] { return EvaluateNdt(level, kOutlierShare, source, pose); });
   };
   const NdtCost one = evaluate(1);
-  const NdtCost two = evaluate(2);
   EXPECT_LT(one.cost, -1.0);
-  EXPECT_EQ(one.cost, two.cost);
-  EXPECT_EQ(one.gradient, two.gradient);
-  EXPECT_EQ(one.hessian, two.hessian);
+  for (const int threads : {2, 3, 8}) {
+    const NdtCost several = evaluate(threads);
+    EXPECT_EQ(one.cost, several.cost);
+    EXPECT_EQ(one.gradient, several.gradient);
+    EXPECT_EQ(one.hessian, several.hessian);
+  }
 }
 
 TEST(NdtCostTest, FacesTurnedAwayDrawNothing) {
