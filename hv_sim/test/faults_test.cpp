@@ -110,8 +110,7 @@ TEST_F(FaultTest, ClockJump) {
   };
   EXPECT_EQ(shift(799), 0.0);
   EXPECT_NEAR(shift(801), -3.0, 1e-9);
-  EXPECT_NEAR(ScanIn(received.scans.back()).stamp - ScanIn(clean_->scans.back()).stamp, -3.0,
-              1e-9);
+  EXPECT_NEAR(ScanIn(received.scans.back()).stamp - ScanIn(clean_->scans.back()).stamp, -3.0, 1e-9);
   EXPECT_EQ(received.imu[801].arrival, clean_->imu[801].arrival);
 }
 
@@ -128,8 +127,7 @@ TEST_F(FaultTest, NanPoints) {
     for (const Point& point : ScanIn(message).points) spoiled += std::isnan(point.x) ? 1U : 0U;
   }
   EXPECT_EQ(PointCount(received), PointCount(*clean_));
-  EXPECT_NEAR(static_cast<double>(spoiled) / static_cast<double>(PointCount(received)), 0.2,
-              0.01);
+  EXPECT_NEAR(static_cast<double>(spoiled) / static_cast<double>(PointCount(received)), 0.2, 0.01);
 }
 
 TEST_F(FaultTest, EmptyScans) {
@@ -166,6 +164,32 @@ TEST_F(FaultTest, SameSeedGivesSameDamage) {
   for (std::size_t i = 0; i < first.scans.size(); ++i) {
     EXPECT_EQ(first.scans[i].header_stamp, second.scans[i].header_stamp);
   }
+}
+
+TEST(KidnapTest, TruthLeavesTheStretchOut) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 100; ++i) {
+    Pose pose = Pose::Identity();
+    pose.translation().x() = i;
+    poses.push_back({Time::FromSeconds(1000.0 + i), pose});
+  }
+  const Trajectory truth = TruthUnder({ParseFault("kidnap:start=20,by=30")},
+                                      Time::FromSeconds(1000.0), Trajectory(poses));
+  ASSERT_EQ(truth.size(), 70U);
+  EXPECT_EQ(truth.poses()[19].pose.translation().x(), 19.0);
+  EXPECT_EQ(truth.poses()[20].stamp, Time::FromSeconds(1020.0));
+  EXPECT_EQ(truth.poses()[20].pose.translation().x(), 50.0);
+}
+
+TEST_F(FaultTest, KidnapContinuesElsewhereWithoutAGap) {
+  const Received received = Receive({"kidnap:start=1,by=2"});
+  const std::size_t lost = static_cast<std::size_t>(2.0 * 400.0);
+  EXPECT_NEAR(static_cast<double>(clean_->imu.size() - received.imu.size()),
+              static_cast<double>(lost), 1.0);
+  for (std::size_t i = 1; i < received.imu.size(); ++i) {
+    EXPECT_NEAR(Imu(received.imu[i]).stamp - Imu(received.imu[i - 1]).stamp, 0.0025, 0.0011);
+  }
+  EXPECT_EQ(Imu(received.imu.back()).angular_velocity, Imu(clean_->imu.back()).angular_velocity);
 }
 
 std::string ErrorOf(const std::string& text) {
