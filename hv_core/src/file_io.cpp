@@ -1,4 +1,4 @@
-#include "file_io.h"
+#include "hv_core/file_io.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "file_io.h"
 #include "hv_core/error.h"
+#include "hv_core/file_io.h"
 #include "hv_core/map_folder.h"
 #include "map_manifest.h"
 

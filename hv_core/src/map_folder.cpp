@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "file_io.h"
 #include "hv_core/error.h"
+#include "hv_core/file_io.h"
 #include "map_manifest.h"
 
 namespace hv {

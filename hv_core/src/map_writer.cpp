@@ -13,8 +13,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "file_io.h"
 #include "hv_core/error.h"
+#include "hv_core/file_io.h"
 #include "map_manifest.h"
 
 namespace hv {

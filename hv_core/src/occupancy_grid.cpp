@@ -6,9 +6,9 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "file_io.h"
 #include "hv_core/config.h"
 #include "hv_core/error.h"
+#include "hv_core/file_io.h"
 #include "point_fields.h"
 
 namespace hv {

@@ -6,8 +6,8 @@
 
 #include <lzf.h>
 
-#include "file_io.h"
 #include "hv_core/error.h"
+#include "hv_core/file_io.h"
 #include "point_fields.h"
 
 namespace hv {

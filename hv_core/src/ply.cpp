@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <cstring>
 
-#include "file_io.h"
 #include "hv_core/error.h"
+#include "hv_core/file_io.h"
 #include "point_fields.h"
 
 namespace hv {

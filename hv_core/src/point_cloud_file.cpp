@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <unordered_map>
 
-#include "file_io.h"
 #include "hv_core/error.h"
+#include "hv_core/file_io.h"
 #include "point_fields.h"
 
 namespace hv {

@@ -7,8 +7,8 @@
 #include <unordered_set>
 #include <vector>
 
-#include "file_io.h"
 #include "hv_core/error.h"
+#include "hv_core/file_io.h"
 #include "point_fields.h"
 
 namespace hv {

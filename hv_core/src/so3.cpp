@@ -60,9 +60,8 @@ Eigen::Matrix3d RightJacobianInverse(const Eigen::Vector3d& theta) {
   const double squared = theta.squaredNorm();
   const double angle = std::sqrt(squared);
   const Eigen::Matrix3d hat = Hat(theta);
-  const double b = angle < kSmallAngle
-                       ? 1.0 / 12.0 + squared / 720.0
-                       : 1.0 / squared - 0.5 / (angle * std::tan(0.5 * angle));
+  const double b = angle < kSmallAngle ? 1.0 / 12.0 + squared / 720.0
+                                       : 1.0 / squared - 0.5 / (angle * std::tan(0.5 * angle));
   return Eigen::Matrix3d::Identity() + 0.5 * hat + b * hat * hat;
 }
 

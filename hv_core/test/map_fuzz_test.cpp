@@ -3,7 +3,7 @@
 #include <functional>
 #include <sstream>
 
-#include "file_io.h"
+#include "hv_core/file_io.h"
 #include "map_manifest.h"
 #include "small_map.h"
 

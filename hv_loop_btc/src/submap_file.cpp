@@ -2,9 +2,8 @@
 
 #include <cmath>
 #include <cstring>
-#include <type_traits>
 
-#include "hv_core/error.h"
+#include "hv_core/binary_io.h"
 
 namespace hv::loop {
 namespace {
@@ -12,71 +11,7 @@ namespace {
 constexpr char kMagic[8] = {'H', 'V', 'B', 'T', 'C', 'D', 'E', 'S'};
 constexpr std::uint32_t kVersion = 1;
 
-class Writer {
- public:
-  template <typename Value>
-  void Put(const Value& value) {
-    static_assert(std::is_arithmetic_v<Value>);
-    bytes_.append(reinterpret_cast<const char*>(&value), sizeof(Value));
-  }
-  void PutSize(std::size_t size) { Put(static_cast<std::uint32_t>(size)); }
-  void Put(const Eigen::Vector3f& vector) {
-    for (int i = 0; i < 3; ++i) Put(vector[i]);
-  }
-  void PutText(const std::string& text) {
-    PutSize(text.size());
-    bytes_ += text;
-  }
-  void PutRaw(const char* bytes, std::size_t size) { bytes_.append(bytes, size); }
-  std::string Take() { return std::move(bytes_); }
-
- private:
-  std::string bytes_;
-};
-
-class Reader {
- public:
-  Reader(const std::string& bytes, const std::string& source) : bytes_(bytes), source_(source) {}
-
-  template <typename Value>
-  Value Get() {
-    static_assert(std::is_arithmetic_v<Value>);
-    Value value;
-    std::memcpy(&value, Advance(sizeof(Value)), sizeof(Value));
-    return value;
-  }
-  /// A count of items of at least `item_bytes` each: refused when they cannot all be there.
-  std::size_t GetSize(std::size_t item_bytes) {
-    const std::size_t size = Get<std::uint32_t>();
-    if (size * item_bytes > bytes_.size() - at_) Fail("ends too early");
-    return size;
-  }
-  Eigen::Vector3f GetVector() {
-    Eigen::Vector3f vector;
-    for (int i = 0; i < 3; ++i) vector[i] = Get<float>();
-    if (!vector.allFinite()) Fail("holds a number that is not finite");
-    return vector;
-  }
-  std::string GetText() {
-    const std::size_t size = GetSize(1);
-    return std::string(Advance(size), size);
-  }
-  const char* Advance(std::size_t size) {
-    if (size > bytes_.size() - at_) Fail("ends too early");
-    const char* here = bytes_.data() + at_;
-    at_ += size;
-    return here;
-  }
-  bool AtEnd() const { return at_ == bytes_.size(); }
-  [[noreturn]] void Fail(const std::string& what) const { throw InputError(source_ + ": " + what); }
-
- private:
-  const std::string& bytes_;
-  const std::string& source_;
-  std::size_t at_ = 0;
-};
-
-void Put(Writer& writer, const SubmapRecord& record) {
+void Put(BinaryWriter& writer, const SubmapRecord& record) {
   writer.Put(record.keyframe);
   writer.Put(record.stamp.nanoseconds());
   writer.Put(record.travelled_m);
@@ -89,7 +24,7 @@ void Put(Writer& writer, const SubmapRecord& record) {
   }
 }
 
-SubmapRecord GetRecord(Reader& reader) {
+SubmapRecord GetRecord(BinaryReader& reader) {
   constexpr std::size_t kMemberBytes = 4 + 7 * 8;
   SubmapRecord record;
   record.keyframe = reader.Get<std::uint32_t>();
@@ -108,7 +43,7 @@ SubmapRecord GetRecord(Reader& reader) {
   return record;
 }
 
-void Put(Writer& writer, const BtcDescriptor& descriptor) {
+void Put(BinaryWriter& writer, const BtcDescriptor& descriptor) {
   writer.Put(descriptor.keyframe);
   writer.PutSize(descriptor.keypoints.size());
   for (const BtcKeypoint& keypoint : descriptor.keypoints) {
@@ -127,7 +62,7 @@ void Put(Writer& writer, const BtcDescriptor& descriptor) {
   }
 }
 
-BtcDescriptor GetDescriptor(Reader& reader) {
+BtcDescriptor GetDescriptor(BinaryReader& reader) {
   BtcDescriptor descriptor;
   descriptor.keyframe = reader.Get<std::uint32_t>();
   descriptor.keypoints.resize(reader.GetSize(3 * 4 + 8));
@@ -154,7 +89,7 @@ BtcDescriptor GetDescriptor(Reader& reader) {
 }  // namespace
 
 std::string Serialize(const StoredSubmaps& submaps) {
-  Writer writer;
+  BinaryWriter writer;
   writer.PutRaw(kMagic, sizeof(kMagic));
   writer.Put(kVersion);
   writer.PutText(submaps.scale);
@@ -167,7 +102,7 @@ std::string Serialize(const StoredSubmaps& submaps) {
 }
 
 StoredSubmaps ParseSubmaps(const std::string& bytes, const std::string& source) {
-  Reader reader(bytes, source);
+  BinaryReader reader(bytes, source);
   if (std::memcmp(reader.Advance(sizeof(kMagic)), kMagic, sizeof(kMagic)) != 0) {
     reader.Fail("holds no descriptors");
   }

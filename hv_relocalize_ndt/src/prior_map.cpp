@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hv_core/error.h"
+#include "hv_relocalize_ndt/ndt_cache.h"
 
 namespace hv::relocalize {
 namespace {
@@ -11,16 +12,35 @@ namespace {
 /// Of the tilt up to which a pose that descriptors propose agrees with gravity.
 constexpr double kUprightCosine = 0.97;
 
+/// Those of the alignment, then that of the surfaces.
+std::vector<double> ResolutionsOf(const RelocalizeConfig& config) {
+  std::vector<double> resolutions_m = config.ndt.resolutions_m;
+  resolutions_m.push_back(config.search.cell_m);
+  return resolutions_m;
+}
+
+/// Where a map keeps its levels, and what they are made of.
+PriorMap::LevelFile LevelsIn(const MapFolder& folder, const RelocalizeConfig& config) {
+  std::string key;
+  for (const MapFile& file : folder.manifest().files) {
+    if (file.name == "cloud.pcd") key = file.sha256;
+  }
+  for (const double resolution_m : ResolutionsOf(config)) {
+    key += " " + std::to_string(resolution_m);
+  }
+  return {folder.path() + "/ndt.bin", key};
+}
+
 }  // namespace
 
 PriorMap PriorMap::Load(const std::string& path, const RelocalizeConfig& config) {
   const MapFolder folder = MapFolder::Open(path);
   std::vector<Eigen::Vector3f> points;
-  for (const Point& point : folder.ReadCloud().points) {
-    points.emplace_back(point.x, point.y, point.z);
-  }
+  const PointCloud cloud = folder.ReadCloud();
+  for (const Point& point : cloud.points) points.emplace_back(point.x, point.y, point.z);
   if (points.empty()) throw InputError(path + ": the cloud of the map is empty");
-  PriorMap map(path, std::move(points), config);
+  if (folder.is_plain_cloud()) return PriorMap(path, std::move(points), config);
+  PriorMap map(path, std::move(points), config, LevelsIn(folder, config));
   const MapContents contents = folder.contents();
   if (contents.graph && contents.descriptors) map.UseSession(loop::LoadSession(folder));
   return map;
@@ -28,12 +48,22 @@ PriorMap PriorMap::Load(const std::string& path, const RelocalizeConfig& config)
 
 PriorMap::PriorMap(std::string name, std::vector<Eigen::Vector3f> points,
                    const RelocalizeConfig& config)
+    : PriorMap(std::move(name), std::move(points), config, {}) {}
+
+PriorMap::PriorMap(std::string name, std::vector<Eigen::Vector3f> points,
+                   const RelocalizeConfig& config, const LevelFile& file)
     : name_(std::move(name)), points_(std::move(points)), config_(config) {
-  for (const double resolution_m : config.ndt.resolutions_m) {
-    levels_.emplace_back(resolution_m, points_);
+  std::optional<std::vector<NdtLevel>> stored;
+  if (!file.path.empty()) stored = ReadLevels(file.path, file.key);
+  if (stored) {
+    levels_ = std::move(*stored);
+  } else {
+    for (const double resolution_m : ResolutionsOf(config)) {
+      levels_.emplace_back(resolution_m, points_);
+    }
+    if (!file.path.empty()) WriteLevels(file.path, levels_, file.key);
   }
-  surfaces_ = std::make_unique<NdtLevel>(config.search.cell_m, points_);
-  structure_ = std::make_unique<StructureGrid>(*surfaces_, config.search.depth);
+  structure_ = std::make_unique<StructureGrid>(surfaces(), config.search.depth);
 }
 
 void PriorMap::UseSession(loop::SavedSession session) {
@@ -76,7 +106,7 @@ std::vector<Pose> PriorMap::PlacesLike(const std::vector<Eigen::Vector3f>& point
 
 std::vector<const NdtLevel*> PriorMap::Levels() const {
   std::vector<const NdtLevel*> levels;
-  for (const NdtLevel& level : levels_) levels.push_back(&level);
+  for (std::size_t i = 0; i + 1 < levels_.size(); ++i) levels.push_back(&levels_[i]);
   return levels;
 }
 

@@ -22,18 +22,25 @@ namespace hv::relocalize {
 /// run concurrently.
 class PriorMap {
  public:
-  /// From a map folder, or a PCD or PLY file. Throws InputError when it is damaged or has no cloud.
+  /// From a map folder, or a PCD or PLY file. The Gaussians are kept in the folder, in ndt.bin, for
+  /// the next time. Throws InputError when the map is damaged or has no cloud.
   static PriorMap Load(const std::string& path, const RelocalizeConfig& config);
 
   /// From points [m].
   PriorMap(std::string name, std::vector<Eigen::Vector3f> points, const RelocalizeConfig& config);
+
+  /// Where levels are kept; no path: nowhere.
+  struct LevelFile {
+    std::string path;
+    std::string key;
+  };
 
   const std::string& name() const { return name_; }
   const std::vector<Eigen::Vector3f>& points() const { return points_; }
   /// Coarse to fine.
   std::vector<const NdtLevel*> Levels() const;
   /// Those of the search and of the score.
-  const NdtLevel& surfaces() const { return *surfaces_; }
+  const NdtLevel& surfaces() const { return levels_.back(); }
   const StructureGrid& structure() const { return *structure_; }
   /// Keyframes and descriptors; none for a plain cloud.
   const std::optional<loop::SavedSession>& session() const { return session_; }
@@ -47,9 +54,10 @@ class PriorMap {
  private:
   std::string name_;
   std::vector<Eigen::Vector3f> points_;
-  std::vector<NdtLevel> levels_;
-  std::unique_ptr<NdtLevel> surfaces_;
+  std::vector<NdtLevel> levels_;  ///< of the alignment, coarse to fine, then the surfaces
   std::unique_ptr<StructureGrid> structure_;
+  PriorMap(std::string name, std::vector<Eigen::Vector3f> points, const RelocalizeConfig& config,
+           const LevelFile& file);
   void UseSession(loop::SavedSession session);
 
   RelocalizeConfig config_;
