@@ -23,8 +23,8 @@ class PoseSearchTest : public testing::Test {
   PoseSearchTest() {
     std::mt19937 random(41);
     const loop::Hall hall(6);
-    const NdtLevel surfaces(config_.cell_m, CloudOf(hall, random));
-    grid_ = std::make_unique<StructureGrid>(surfaces, config_.depth);
+    surfaces_ = std::make_unique<NdtLevel>(config_.cell_m, CloudOf(hall, random));
+    grid_ = std::make_unique<StructureGrid>(*surfaces_, config_.depth);
     truth_ = OnRing(2.1, 4.0, -1.3);
     const NdtLevel scan(config_.cell_m, ScanOf(hall, truth_, random));
     scan_ = StructureCells(scan, Eigen::Matrix3d::Identity());
@@ -83,6 +83,7 @@ class PoseSearchTest : public testing::Test {
   }
 
   PoseSearchConfig config_;
+  std::unique_ptr<NdtLevel> surfaces_;
   std::unique_ptr<StructureGrid> grid_;
   Cells scan_;
   Pose truth_;
@@ -147,6 +148,27 @@ TEST_F(PoseSearchTest, HypothesesAreDistinctAndBestFirst) {
       EXPECT_TRUE((a.translation() - b.translation()).norm() >= config_.same_place_m ||
                   RotationDistance(a, b) >= config_.same_heading_deg * kDegree);
     }
+  }
+}
+
+TEST_F(PoseSearchTest, PosesAreAboveFloors) {
+  config_.min_score_share = 0.3;
+  config_.level_share = 0.0;
+  const double best_with_floor = Find(Everywhere()).front().score;
+  std::vector<NdtVoxel> half_without_floor;
+  for (const NdtVoxel& voxel : surfaces_->voxels()) {
+    const bool level = std::abs(voxel.normal.z()) > 0.9F;
+    if (!level || voxel.mean.x() > 0.0F) half_without_floor.push_back(voxel);
+  }
+  const NdtLevel surfaces(config_.cell_m, half_without_floor);
+  grid_ = std::make_unique<StructureGrid>(surfaces, config_.depth);
+  const std::vector<PoseHypothesis> found = Find(Everywhere());
+  ASSERT_FALSE(found.empty());
+  // What stands upright still fits best where the scan was taken, but there is no floor any more.
+  EXPECT_FALSE(grid_->CanStand(0, grid_->CellOf(truth_.translation())));
+  EXPECT_LT(found.front().score, best_with_floor);
+  for (const PoseHypothesis& hypothesis : found) {
+    EXPECT_TRUE(grid_->CanStand(0, grid_->CellOf(hypothesis.T_map_level.translation())));
   }
 }
 
