@@ -7,6 +7,9 @@
 namespace hv::relocalize {
 namespace {
 
+/// No LiDAR sees farther [m].
+constexpr float kFarthest = 1000.0F;
+
 TrackedScan ScanOf(const TrackedScanHeader& header, const std::vector<Point>& points) {
   TrackedScan scan;
   scan.stamp = header.stamp;
@@ -14,7 +17,10 @@ TrackedScan ScanOf(const TrackedScanHeader& header, const std::vector<Point>& po
   scan.segment = header.segment;
   scan.lidar_in_imu = header.lidar_in_imu;
   scan.points.reserve(points.size());
-  for (const Point& point : points) scan.points.emplace_back(point.x, point.y, point.z);
+  for (const Point& point : points) {
+    const Eigen::Vector3f position(point.x, point.y, point.z);
+    if (position.cwiseAbs().maxCoeff() < kFarthest) scan.points.push_back(position);
+  }
   return scan;
 }
 

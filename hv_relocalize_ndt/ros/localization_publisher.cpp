@@ -32,6 +32,7 @@ void LocalizationPublisher::Publish(const LocalizationReport& report,
 
 void LocalizationPublisher::PublishPath(const LocalizationReport& report) {
   const Time stamp = report.scan.stamp;
+  if (report.update.found) path_.Clear();
   path_.Add(stamp, report.T_map_base);
   const bool due = !path_sent_ || stamp < *path_sent_ || stamp - *path_sent_ >= kPathPeriod;
   if (path_publisher_.getNumSubscribers() == 0 || !due) return;

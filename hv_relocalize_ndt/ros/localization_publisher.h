@@ -12,8 +12,8 @@
 namespace hv::relocalize {
 
 /// Sends where the robot is, after each scan while that is known: topics `localization_pose`,
-/// `localization_path` and `localization_scan`; the latter two only while somebody listens. Not
-/// thread-safe.
+/// `localization_path` and `localization_scan`; the latter two only while somebody listens. The
+/// path is that since the place was last found. Not thread-safe.
 class LocalizationPublisher {
  public:
   LocalizationPublisher(ros::NodeHandle nh, const LocalizationOutputConfig& config);
