@@ -16,12 +16,13 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, PointCloud2
 from tf2_msgs.msg import TFMessage
 
-_DEVEL = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
-RECORDING = os.path.join(_DEVEL, "share", "hv_bringup", "test", "recording.bag")
-LOOP_RECORDING = os.path.join(_DEVEL, "share", "hv_bringup", "test", "loop", "recording.bag")
-HV_SLAM = os.path.join(_DEVEL, "lib", "hv_replay", "hv_slam")
-HV_LIO_NODE = os.path.join(_DEVEL, "lib", "hv_lio", "hv_lio_node")
-HV_LOOP_BTC_NODE = os.path.join(_DEVEL, "lib", "hv_loop_btc", "hv_loop_btc_node")
+DEVEL = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+TEST_DATA = os.path.join(DEVEL, "share", "hv_bringup", "test")
+RECORDING = os.path.join(TEST_DATA, "recording.bag")
+LOOP_RECORDING = os.path.join(TEST_DATA, "loop", "recording.bag")
+HV_SLAM = os.path.join(DEVEL, "lib", "hv_replay", "hv_slam")
+HV_LIO_NODE = os.path.join(DEVEL, "lib", "hv_lio", "hv_lio_node")
+HV_LOOP_BTC_NODE = os.path.join(DEVEL, "lib", "hv_loop_btc", "hv_loop_btc_node")
 CONFIG = os.path.join(rospkg.RosPack().get_path("hv_bringup"), "..", "config", "robot.yaml")
 
 POINTS = "/points"
@@ -98,9 +99,9 @@ class Player:
         self.messages = [(topic, message) for topic, message, _ in everything
                          if topic in self._publishers]
         self._static = rospy.Publisher("/tf_static", TFMessage, queue_size=10, latch=True)
-        transforms = [transform for topic, message, _ in everything if topic == "/tf_static"
-                      for transform in message.transforms]
-        self._static.publish(TFMessage(transforms))
+        self.transforms = [transform for topic, message, _ in everything if topic == "/tf_static"
+                           for transform in message.transforms]
+        self._static.publish(TFMessage(self.transforms))
 
     def wait_for_node(self, topics=(POINTS, IMU)):
         return wait_until(lambda: all(self._publishers[topic].get_num_connections() > 0
@@ -125,11 +126,10 @@ class Player:
     def send(self, topic, message):
         self._publishers[topic].publish(message)
 
-    def play(self, messages, done=None):
+    def play(self, messages, done=None, ahead=10):
         """Publishes `messages`; `done()` counts what the node has answered, and the player keeps
-        at most ten clouds ahead of it, beside those that the node leaves unanswered."""
+        at most `ahead` clouds ahead of it, beside those that the node leaves unanswered."""
         sent = 0
-        ahead = 10
         answered_before = done() if done else 0
         for topic, message in messages:
             self.send(topic, message)

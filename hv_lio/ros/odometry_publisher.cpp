@@ -1,6 +1,7 @@
 #include "odometry_publisher.h"
 
 #include <hv_msgs/Keyframe.h>
+#include <hv_msgs/TrackedScan.h>
 #include <nav_msgs/Odometry.h>
 #include <nav_msgs/Path.h>
 #include <sensor_msgs/PointCloud2.h>
@@ -10,6 +11,7 @@
 #include "conversions.h"
 #include "hv_ros/conversions.h"
 #include "hv_ros/keyframe_message.h"
+#include "hv_ros/tracked_scan_message.h"
 #include "voxel_markers.h"
 
 namespace hv::lio {
@@ -35,6 +37,7 @@ OdometryPublisher::OdometryPublisher(ros::NodeHandle nh, const OutputConfig& con
   odometry_ = nh.advertise<nav_msgs::Odometry>("odometry", 100);
   if (with_imu) odometry_imu_ = nh.advertise<nav_msgs::Odometry>("odometry_imu", 1000);
   cloud_ = nh.advertise<sensor_msgs::PointCloud2>("cloud_registered", 10);
+  tracked_scan_ = nh.advertise<hv_msgs::TrackedScan>("tracked_scan", 10);
   path_publisher_ = nh.advertise<nav_msgs::Path>("path", 2);
   voxels_ = nh.advertise<visualization_msgs::MarkerArray>("voxels", 1);
   keyframe_ = nh.advertise<hv_msgs::Keyframe>("keyframe", 50);
@@ -47,6 +50,7 @@ void OdometryPublisher::PublishScan(const ScanResult& result) {
   if (config_.publish_tf) {
     transforms_.sendTransform(ToTransformMessage(body, config_.odom_frame, config_.base_frame));
   }
+  PublishTrackedScan(result);
   PublishPath(body);
   if (result.status != ScanStatus::kTracking || !result.deskewed) return;
   PublishCloud(result);
@@ -72,6 +76,22 @@ void OdometryPublisher::PublishCloud(const ScanResult& result) const {
   message->header.stamp = ToRos(result.estimate.stamp);
   message->header.frame_id = config_.odom_frame;
   cloud_.publish(message);
+}
+
+void OdometryPublisher::PublishTrackedScan(const ScanResult& result) const {
+  if (tracked_scan_.getNumSubscribers() == 0) return;
+  TrackedScanHeader header;
+  header.stamp = result.estimate.stamp;
+  header.odom_frame = config_.odom_frame;
+  header.imu_frame = config_.imu_frame;
+  header.base_frame = config_.base_frame;
+  header.segment = result.segment;
+  header.T_odom_imu = result.estimate.T_odom_imu;
+  header.T_imu_base = T_base_imu_.inverse();
+  header.lidar_in_imu = lidar_in_imu_;
+  const bool usable = result.status == ScanStatus::kTracking && result.deskewed;
+  const std::vector<Point> none;
+  tracked_scan_.publish(ToMessage(header, usable ? *result.deskewed : none));
 }
 
 void OdometryPublisher::PublishKeyframe(const ScanResult& result) {

@@ -23,18 +23,6 @@ ros::Time NewestStamp(const LoopView& view) {
   return view.placed.empty() ? ros::Time() : ToRos(view.placed.back().stamp);
 }
 
-nav_msgs::OccupancyGrid ToMessage(const OccupancyGrid& grid) {
-  nav_msgs::OccupancyGrid message;
-  message.info.resolution = static_cast<float>(grid.resolution_m);
-  message.info.width = static_cast<std::uint32_t>(grid.width);
-  message.info.height = static_cast<std::uint32_t>(grid.height);
-  message.info.origin.position.x = grid.origin.x();
-  message.info.origin.position.y = grid.origin.y();
-  message.info.origin.orientation.w = 1.0;
-  message.data.assign(grid.cells.begin(), grid.cells.end());
-  return message;
-}
-
 }  // namespace
 
 bool MapDisplay::Topic::Wants(std::uint64_t revision) const {
@@ -143,7 +131,7 @@ void MapDisplay::PublishCloud(const LoopView& view) {
 void MapDisplay::PublishGrid(const LoopView& view) {
   const BuiltMap built =
       MapBuilder(config_.map).Build(view.placed, [this](std::uint32_t id) { return Load(id); });
-  nav_msgs::OccupancyGrid message = ToMessage(built.grid);
+  nav_msgs::OccupancyGrid message = ToGridMessage(built.grid);
   message.header.frame_id = config_.mapping.map_frame;
   message.header.stamp = message.info.map_load_time = NewestStamp(view);
   grid_.publisher.publish(message);

@@ -23,6 +23,10 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+TransformOptions TransformsOf(const MappingNodeConfig& config) {
+  return {config.map_frame, config.publish_tf, config.tf_tolerance_s, config.correction_s};
+}
+
 /// After an interrupt rosconsole prints no more.
 void TellAtExit(const std::string& line) { std::cerr << "hv_loop_btc: " << line << std::endl; }
 
@@ -34,7 +38,7 @@ MappingNode::MappingNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
       queue_(parameters_.WorkFolder(), kKeyframesInMemory),
       saving_(engine_, parameters_.config, parameters_.map_path),
       health_(engine_, queue_, saving_, parameters_.WorkFolder()),
-      transforms_(parameters_.config.mapping),
+      transforms_(TransformsOf(parameters_.config.mapping)),
       display_(nh, parameters_.config, engine_),
       reported_(engine_.state()),
       diagnostics_(nh, private_nh, private_nh.getNamespace()) {

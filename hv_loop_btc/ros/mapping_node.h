@@ -10,6 +10,7 @@
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
 
+#include "hv_ros/transform_publisher.h"
 #include "keyframe_queue.h"
 #include "loop_engine.h"
 #include "map_display.h"
@@ -17,7 +18,6 @@
 #include "mapping_health.h"
 #include "parameters.h"
 #include "save_server.h"
-#include "transform_publisher.h"
 
 namespace hv::loop {
 

@@ -60,6 +60,14 @@ LocalizerUpdate Localizer::Add(const TrackedScan& scan) {
   return Taken();
 }
 
+LocalizerUpdate Localizer::Skip(const TrackedScan& scan) {
+  update_ = LocalizerUpdate();
+  Follow(scan);
+  return Taken();
+}
+
+void Localizer::Forget() { Lose("asked to look for the place anew"); }
+
 LocalizerUpdate Localizer::Wait(Time now) {
   update_ = LocalizerUpdate();
   if (state_ != LocalizerState::kLost && last_scan_ &&
@@ -114,6 +122,10 @@ void Localizer::Search(const TrackedScan& scan) {
   last_comparison_ = scan.stamp;
   update_.registered = update_.searched = true;
   update_.score = found.score;
+  update_.found = found.localized;
+  update_.refusal = found.reason;
+  update_.margin = found.margin;
+  update_.lead = found.lead;
   if (!found.localized) {
     if (state_ == LocalizerState::kLost) reason_ = found.reason;
     return;

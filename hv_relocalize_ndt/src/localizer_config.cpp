@@ -54,14 +54,57 @@ void TrackingConfig::Validate(ConfigProblems& problems) const {
   problems.Require(misses >= 1, "tracking.misses", "must be at least 1");
 }
 
+void LocalizationOutputConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Field("map_frame", map_frame, "fixed frame of the map");
+  visitor.Field("publish_tf", publish_tf, "publish map -> odom on /tf");
+  visitor.Field("tf_tolerance_s", tf_tolerance_s,
+                "how far map -> odom is stamped into the future, so that nobody waits for it [s]");
+  visitor.Field("correction_s", correction_s,
+                "time in which map -> odom moves to a new value; 0 = at once [s]");
+  visitor.Field("cloud_voxel_m", cloud_voxel_m, "grid of the published map cloud [m]");
+  visitor.Field("cloud_max_points", cloud_max_points,
+                "most points of the published map cloud; its grid becomes coarser beyond");
+  visitor.Field("path_min_distance_m", path_min_distance_m,
+                "distance between two poses of the published path [m]");
+  visitor.Field("path_max_poses", path_max_poses,
+                "most poses of the published path; it becomes coarser beyond");
+}
+
+void LocalizationOutputConfig::Validate(ConfigProblems& problems) const {
+  const auto require = [&](bool condition, const char* key, const char* what) {
+    problems.Require(condition, std::string("output.") + key, what);
+  };
+  require(!map_frame.empty(), "map_frame", "must not be empty");
+  require(tf_tolerance_s >= 0.0 && tf_tolerance_s <= 1.0, "tf_tolerance_s",
+          "must be between 0 and 1");
+  require(correction_s >= 0.0, "correction_s", "must not be negative");
+  require(cloud_voxel_m >= 0.02, "cloud_voxel_m", "must be at least 0.02");
+  require(cloud_max_points >= 1000, "cloud_max_points", "must be at least 1000");
+  require(path_min_distance_m >= 0.0, "path_min_distance_m", "must not be negative");
+  require(path_max_poses >= 2, "path_max_poses", "must be at least 2");
+}
+
 void LocalizerConfig::Describe(ConfigVisitor& visitor) {
   relocalize.Describe(visitor);
   visitor.Section("tracking", tracking, "the pose in the map while the robot moves");
+  visitor.Section("output", output, "what the localisation node publishes");
 }
 
 void LocalizerConfig::Validate(ConfigProblems& problems) const {
   relocalize.Validate(problems);
   tracking.Validate(problems);
+  output.Validate(problems);
+}
+
+void LocalizationNodeConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Section("localization", localization, "localisation in a saved map");
+  for (const char* section : {"input", "points", "odometry", "output", "loop", "map", "mapping"}) {
+    visitor.Foreign(section);
+  }
+}
+
+void LocalizationNodeConfig::Validate(ConfigProblems& problems) const {
+  localization.Validate(problems);
 }
 
 }  // namespace hv::relocalize

@@ -125,6 +125,18 @@ sensor_msgs::PointCloud2Ptr ToCloudMessage(const std::vector<Point>& points) {
   return cloud;
 }
 
+nav_msgs::OccupancyGrid ToGridMessage(const OccupancyGrid& grid) {
+  nav_msgs::OccupancyGrid message;
+  message.info.resolution = static_cast<float>(grid.resolution_m);
+  message.info.width = static_cast<std::uint32_t>(grid.width);
+  message.info.height = static_cast<std::uint32_t>(grid.height);
+  message.info.origin.position.x = grid.origin.x();
+  message.info.origin.position.y = grid.origin.y();
+  message.info.origin.orientation.w = 1.0;
+  message.data.assign(grid.cells.begin(), grid.cells.end());
+  return message;
+}
+
 std::vector<Point> Transformed(const Pose& T_a_b, const std::vector<Point>& points) {
   const Eigen::Isometry3f transform = T_a_b.cast<float>();
   std::vector<Point> moved = points;

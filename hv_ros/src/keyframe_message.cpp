@@ -1,30 +1,21 @@
 #include "hv_ros/keyframe_message.h"
 
 #include <cmath>
-#include <cstring>
-#include <optional>
 #include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <boost/make_shared.hpp>
 
 #include "hv_ros/conversions.h"
+#include "hv_ros/message_checks.h"
 
 namespace hv {
 namespace {
-
-using sensor_msgs::PointCloud2;
-using sensor_msgs::PointField;
 
 std::vector<geometry_msgs::Vector3> ToMessages(const std::vector<Eigen::Vector3d>& vectors) {
   std::vector<geometry_msgs::Vector3> messages;
   for (const Eigen::Vector3d& vector : vectors) messages.push_back(ToVectorMessage(vector));
   return messages;
-}
-
-template <typename Message>
-Eigen::Vector3d ToVector(const Message& message) {
-  return {message.x, message.y, message.z};
 }
 
 bool IsDirection(const Eigen::Vector3d& vector) { return vector.allFinite() && vector.norm() > 0; }
@@ -39,13 +30,6 @@ bool ReadDirections(const std::vector<geometry_msgs::Vector3>& messages,
   return true;
 }
 
-bool IsPose(const geometry_msgs::Pose& pose) {
-  constexpr double kTolerance = 1e-3;
-  const auto& q = pose.orientation;
-  const double norm = Eigen::Vector4d(q.x, q.y, q.z, q.w).norm();
-  return ToVector(pose.position).allFinite() && std::abs(norm - 1.0) < kTolerance;
-}
-
 bool IsCovariance(const Matrix6d& matrix) {
   constexpr double kTolerance = 1e-9;
   if (!matrix.allFinite()) return false;
@@ -53,52 +37,6 @@ bool IsCovariance(const Matrix6d& matrix) {
   if ((matrix - matrix.transpose()).cwiseAbs().maxCoeff() > kTolerance * scale) return false;
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(matrix, Eigen::EigenvaluesOnly);
   return solver.eigenvalues().minCoeff() >= -kTolerance * scale;
-}
-
-/// Offset of a float32 field within a point; nullopt when there is none.
-std::optional<std::size_t> OffsetOf(const PointCloud2& cloud, const char* name) {
-  for (const PointField& field : cloud.fields) {
-    const bool fits = std::size_t{field.offset} + sizeof(float) <= cloud.point_step;
-    if (field.name == name && field.datatype == PointField::FLOAT32 && fits) return field.offset;
-  }
-  return std::nullopt;
-}
-
-bool SizesAgree(const PointCloud2& cloud) {
-  const std::uint64_t row = std::uint64_t{cloud.width} * cloud.point_step;
-  if (cloud.height == 0 || cloud.width == 0) return true;
-  return cloud.row_step >= row &&
-         (cloud.height - 1) * std::uint64_t{cloud.row_step} + row <= cloud.data.size();
-}
-
-float FloatAt(const std::uint8_t* bytes) {
-  float value = 0.0F;
-  std::memcpy(&value, bytes, sizeof(value));
-  return value;
-}
-
-/// Returns what is wrong, or nothing.
-std::string ReadPoints(const PointCloud2& cloud, std::vector<Point>& points) {
-  const auto x = OffsetOf(cloud, "x");
-  const auto y = OffsetOf(cloud, "y");
-  const auto z = OffsetOf(cloud, "z");
-  const auto intensity = OffsetOf(cloud, "intensity");
-  if (!x || !y || !z) return "its cloud has no float32 fields x, y, z";
-  if (cloud.is_bigendian != 0 || !SizesAgree(cloud)) return "sizes of its cloud contradict";
-  for (std::size_t row = 0; row < cloud.height; ++row) {
-    for (std::size_t column = 0; column < cloud.width; ++column) {
-      const std::uint8_t* bytes = &cloud.data[row * cloud.row_step + column * cloud.point_step];
-      Point point;
-      point.x = FloatAt(bytes + *x);
-      point.y = FloatAt(bytes + *y);
-      point.z = FloatAt(bytes + *z);
-      if (intensity) point.intensity = FloatAt(bytes + *intensity);
-      const bool finite =
-          std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
-      if (finite) points.push_back(point);
-    }
-  }
-  return "";
 }
 
 /// Everything but the cloud. Returns what is wrong, or nothing.

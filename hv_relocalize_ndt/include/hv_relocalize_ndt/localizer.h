@@ -44,6 +44,10 @@ struct LocalizerUpdate {
   bool searched = false;                   ///< and, being lost, with all of it
   PlaceScore score;                        ///< of that comparison
   double innovation = 0.0;                 ///< squared, six degrees of freedom
+  bool found = false;                      ///< the search has found the place
+  std::string refusal;                     ///< why it has not, one line
+  double margin = 0.0;                     ///< of the search: see LocalizationResult
+  double lead = 0.0;                       ///< likewise
 };
 
 /// Localisation in a prior map (paper 4.4.1): odometry carries the pose at its rate, registrations
@@ -58,11 +62,15 @@ class Localizer {
   /// there.
   void SetGuess(const PoseGuess& guess) { guess_ = guess; }
 
-  /// Forgets the place; the next scan is looked for anywhere.
-  void Forget() { Lose("asked to look anew"); }
+  /// From now on the place is not known; the next scan is looked for anywhere, or near a guess.
+  void Forget();
 
   /// Takes the next scan, in order of time.
   LocalizerUpdate Add(const TrackedScan& scan);
+
+  /// The same for a scan that there is no time to compare: odometry alone carries the pose along,
+  /// its points are not used.
+  LocalizerUpdate Skip(const TrackedScan& scan);
 
   /// The time goes on without a scan: after TrackingConfig::silence_s the place is no longer known.
   LocalizerUpdate Wait(Time now);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "hv_core/config.h"
 #include "hv_relocalize_ndt/relocalize_config.h"
 
@@ -28,10 +30,34 @@ struct TrackingConfig {
   void Validate(ConfigProblems& problems) const;
 };
 
+/// What the localisation node publishes; the offline tools do not use it.
+struct LocalizationOutputConfig {
+  std::string map_frame = "map";
+  bool publish_tf = true;
+  double tf_tolerance_s = 0.1;
+  double correction_s = 0.5;
+  double cloud_voxel_m = 0.2;
+  int cloud_max_points = 1000000;
+  double path_min_distance_m = 0.1;
+  int path_max_poses = 20000;
+
+  void Describe(ConfigVisitor& visitor);
+  void Validate(ConfigProblems& problems) const;
+};
+
 /// Everything that localisation can be told. Section `localization` of the configuration file.
 struct LocalizerConfig {
   RelocalizeConfig relocalize;
   TrackingConfig tracking;
+  LocalizationOutputConfig output;
+
+  void Describe(ConfigVisitor& visitor);
+  void Validate(ConfigProblems& problems) const;
+};
+
+/// What the localisation node reads of the configuration file.
+struct LocalizationNodeConfig {
+  LocalizerConfig localization;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

@@ -6,11 +6,13 @@
 #include <geometry_msgs/Pose.h>
 #include <geometry_msgs/Transform.h>
 #include <geometry_msgs/Vector3.h>
+#include <nav_msgs/OccupancyGrid.h>
 #include <ros/time.h>
 #include <sensor_msgs/Imu.h>
 #include <sensor_msgs/PointCloud2.h>
 
 #include "hv_core/imu_sample.h"
+#include "hv_core/occupancy_grid.h"
 #include "hv_core/scan.h"
 #include "hv_core/se3.h"
 #include "hv_core/time.h"
@@ -38,6 +40,9 @@ void CopyCovariance(const Matrix6d& covariance, boost::array<double, 36>& values
 
 /// Points as x y z intensity (float32), one row. The header is left to the caller.
 sensor_msgs::PointCloud2Ptr ToCloudMessage(const std::vector<Point>& points);
+
+/// The header is left to the caller.
+nav_msgs::OccupancyGrid ToGridMessage(const OccupancyGrid& grid);
 
 /// Points carried into another frame: p_a = T_a_b * p_b.
 std::vector<Point> Transformed(const Pose& T_a_b, const std::vector<Point>& points);

@@ -1,8 +1,8 @@
-#include "map_correction.h"
+#include "hv_ros/map_correction.h"
 
 #include <gtest/gtest.h>
 
-namespace hv::loop {
+namespace hv {
 namespace {
 
 const Pose kBody = MakePose(RotationFromRpy(0.0, 0.0, 0.4), Eigen::Vector3d(120.0, -40.0, 1.0));
@@ -61,4 +61,4 @@ TEST(MapCorrection, AClockThatJumpsBackEndsTheMovement) {
 }
 
 }  // namespace
-}  // namespace hv::loop
+}  // namespace hv

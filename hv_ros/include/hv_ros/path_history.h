@@ -7,7 +7,7 @@
 #include "hv_core/se3.h"
 #include "hv_core/time.h"
 
-namespace hv::lio {
+namespace hv {
 
 /// The driven path with bounded memory: a pose is kept when it is far enough from the last one
 /// kept; when the path is full, every second pose goes and the distance doubles, so that the whole
@@ -33,4 +33,4 @@ class PathHistory {
   nav_msgs::Path path_;
 };
 
-}  // namespace hv::lio
+}  // namespace hv

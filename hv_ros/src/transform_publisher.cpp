@@ -1,10 +1,13 @@
-#include "transform_publisher.h"
+#include "hv_ros/transform_publisher.h"
+
+#include <utility>
 
 #include <geometry_msgs/TransformStamped.h>
 
 #include "hv_ros/conversions.h"
+#include "hv_ros/message_checks.h"
 
-namespace hv::loop {
+namespace hv {
 namespace {
 
 /// tf complains about a stamp that it has already; a larger step back is a jump of the clock.
@@ -13,20 +16,14 @@ bool IsRepeated(Time stamp, const std::optional<Time>& last) {
   return last && stamp <= *last && *last - stamp < kJump;
 }
 
-bool IsUsable(const nav_msgs::Odometry& odometry) {
-  const auto& p = odometry.pose.pose.position;
-  const auto& q = odometry.pose.pose.orientation;
-  return Eigen::Vector3d(p.x, p.y, p.z).allFinite() &&
-         std::abs(Eigen::Vector4d(q.x, q.y, q.z, q.w).norm() - 1.0) < 1e-3;
-}
-
 }  // namespace
 
-TransformPublisher::TransformPublisher(const MappingNodeConfig& config)
-    : config_(config), correction_(config.correction_s) {}
+TransformPublisher::TransformPublisher(TransformOptions options)
+    : options_(std::move(options)), correction_(options_.correction_s) {}
 
 void TransformPublisher::Update(const Pose& T_map_odom, bool at_once) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  withdrawn_ = false;
   if (at_once) {
     correction_.JumpTo(T_map_odom);
   } else {
@@ -34,18 +31,24 @@ void TransformPublisher::Update(const Pose& T_map_odom, bool at_once) {
   }
 }
 
-void TransformPublisher::OnOdometry(const nav_msgs::Odometry& odometry) {
-  if (!config_.publish_tf || !IsUsable(odometry)) return;
+void TransformPublisher::Withdraw() {
   const std::lock_guard<std::mutex> lock(mutex_);
+  withdrawn_ = true;
+}
+
+void TransformPublisher::OnOdometry(const nav_msgs::Odometry& odometry) {
+  if (!options_.publish || !IsPose(odometry.pose.pose)) return;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (withdrawn_) return;
   const Time stamp = FromRos(odometry.header.stamp);
   if (IsRepeated(stamp, last_)) return;
   last_ = stamp;
   geometry_msgs::TransformStamped transform;
-  transform.header.stamp = ToRos(stamp + config_.tf_tolerance_s);
-  transform.header.frame_id = config_.map_frame;
+  transform.header.stamp = ToRos(stamp + options_.tolerance_s);
+  transform.header.frame_id = options_.map_frame;
   transform.child_frame_id = odometry.header.frame_id;
   transform.transform = ToTransform(correction_.At(stamp, FromRos(odometry.pose.pose)));
   broadcaster_.sendTransform(transform);
 }
 
-}  // namespace hv::loop
+}  // namespace hv

@@ -1,10 +1,10 @@
-#include "path_history.h"
+#include "hv_ros/path_history.h"
 
 #include <algorithm>
 
 #include "hv_ros/conversions.h"
 
-namespace hv::lio {
+namespace hv {
 namespace {
 
 double Distance(const geometry_msgs::Point& a, const Eigen::Vector3d& b) {
@@ -44,4 +44,4 @@ void PathHistory::DropEverySecond() {
   min_distance_ *= 2.0;
 }
 
-}  // namespace hv::lio
+}  // namespace hv

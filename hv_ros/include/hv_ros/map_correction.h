@@ -5,12 +5,12 @@
 #include "hv_core/se3.h"
 #include "hv_core/time.h"
 
-namespace hv::loop {
+namespace hv {
 
-/// The published T_map_odom: loop closing moves it in steps, planners want no jumps. A new value is
-/// reached within a fixed time, during which the robot would slide and turn at a constant rate from
-/// where it was seen to where it is (linear in position, shortest arc in rotation, about the robot
-/// and not about the far origin of odom). Not thread-safe.
+/// The published T_map_odom: loop closing and localisation move it in steps, planners want no
+/// jumps. A new value is reached within a fixed time, during which the robot would slide and turn
+/// at a constant rate from where it was seen to where it is (linear in position, shortest arc in
+/// rotation, about the robot and not about the far origin of odom). Not thread-safe.
 class MapCorrection {
  public:
   /// `duration_s` 0: new values hold at once.
@@ -40,4 +40,4 @@ class MapCorrection {
   std::optional<Movement> movement_;
 };
 
-}  // namespace hv::loop
+}  // namespace hv

@@ -1,6 +1,6 @@
-#include "map_correction.h"
+#include "hv_ros/map_correction.h"
 
-namespace hv::loop {
+namespace hv {
 namespace {
 
 Pose Between(const Pose& from, const Pose& to, double share) {
@@ -36,4 +36,4 @@ Pose MapCorrection::At(Time stamp, const Pose& T_odom_body) {
   return T_map_odom_;
 }
 
-}  // namespace hv::loop
+}  // namespace hv

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <geometry_msgs/Pose.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <Eigen/Core>
+
+#include "hv_core/scan.h"
+
+/// Reading messages that anybody may have sent: nothing in them is trusted. All functions are pure.
+namespace hv {
+
+/// Of a message with members x, y, z; nothing is checked.
+template <typename Message>
+Eigen::Vector3d ToVector(const Message& message) {
+  return {message.x, message.y, message.z};
+}
+
+/// Whether it is finite and its quaternion of length 1.
+bool IsPose(const geometry_msgs::Pose& pose);
+
+/// Appends the points of a cloud with float32 fields x, y, z and perhaps intensity; those that are
+/// not finite are left out. Returns what is wrong with the cloud in one line, or nothing.
+std::string ReadPoints(const sensor_msgs::PointCloud2& cloud, std::vector<Point>& points);
+
+}  // namespace hv
