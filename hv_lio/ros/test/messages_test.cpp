@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include "hv_core/se3.h"
-
 #include "voxel_markers.h"
 
 namespace hv::lio {
