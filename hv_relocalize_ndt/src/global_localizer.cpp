@@ -5,15 +5,10 @@
 #include <cstdio>
 #include <limits>
 
-#include <Eigen/Cholesky>
-
 namespace hv::relocalize {
 namespace {
 
 constexpr double kRadians = M_PI / 180.0;
-/// Levels finer than this refine hypotheses of the search, which are right to a cube and a few
-/// degrees.
-constexpr double kSearchBasin_m = 4.0;
 
 bool SamePlace(const Pose& a, const Pose& b, const PoseSearchConfig& config) {
   return (a.translation() - b.translation()).norm() < config.same_place_m &&
@@ -106,14 +101,8 @@ std::vector<LocalizationCandidate> GlobalLocalizer::ProposeByDescriptors(const S
 
 void GlobalLocalizer::Refine(const Scan& scan,
                              std::vector<LocalizationCandidate>& candidates) const {
-  std::vector<const NdtLevel*> fine;
-  for (const NdtLevel* level : map_.Levels()) {
-    if (level->resolution_m() < kSearchBasin_m || level == map_.Levels().back()) {
-      fine.push_back(level);
-    }
-  }
   for (LocalizationCandidate& candidate : candidates) {
-    const auto levels = candidate.origin == "guess" ? map_.Levels() : fine;
+    const auto levels = candidate.origin == "guess" ? map_.Levels() : map_.FineLevels();
     candidate.T_map_scan =
         registration_.Align(levels, scan.source, candidate.T_map_scan).T_target_source;
     candidate.score = scan.judge.Judge(candidate.T_map_scan);
@@ -129,9 +118,7 @@ void GlobalLocalizer::Measure(const Scan& scan, LocalizationResult& result) cons
   const LocalizationCandidate& best = result.candidates.front();
   const NdtResult last = registration_.Align({map_.Levels().back()}, scan.source, best.T_map_scan);
   result.T_map_scan = last.T_target_source;
-  const Matrix6d damped = last.hessian + 1e-9 * Matrix6d::Identity();
-  result.covariance =
-      config_.covariance_scale * damped.ldlt().solve(Matrix6d(Matrix6d::Identity()));
+  result.covariance = CovarianceOf(last, config_.covariance_scale);
   result.score = best.score;
   result.margin = best.score.score();
   result.lead = std::numeric_limits<double>::infinity();

@@ -3,14 +3,10 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 namespace hv::relocalize {
 namespace {
 
 constexpr double kRadians = M_PI / 180.0;
-/// Levels finer than this follow a pose that is known.
-constexpr double kTrackingBasin_m = 4.0;
 
 /// The scan in a frame with the axes of the IMU and the origin of the LiDAR, from which surfaces
 /// are seen.
@@ -140,38 +136,46 @@ void Localizer::Search(const TrackedScan& scan) {
 
 /// Compares the scan with the map where the robot is believed to be.
 void Localizer::Register(const TrackedScan& scan) {
-  const TrackingConfig& tracking = config_.tracking;
   last_comparison_ = scan.stamp;
   const Pose T_imu_scan = Shift(scan.lidar_in_imu);
   const std::vector<Eigen::Vector3f> points = SeenFromLidar(scan);
-  const NdtSource source(config_.relocalize.ndt, points);
+  const NdtResult aligned =
+      registration_.Align(map_.FineLevels(), NdtSource(config_.relocalize.ndt, points),
+                          filter_.T_map_imu() * T_imu_scan);
   const NdtLevel surfaces(map_.surfaces().resolution_m(), points);
-  const PlaceJudge judge(config_.relocalize.score, map_.surfaces(), surfaces, points,
-                         scan.T_odom_imu.linear().row(2));
-  std::vector<const NdtLevel*> levels;
-  for (const NdtLevel* level : map_.Levels()) {
-    const bool fine = level->resolution_m() < kTrackingBasin_m || level == map_.Levels().back();
-    if (fine) levels.push_back(level);
-  }
-  const NdtResult aligned = registration_.Align(levels, source, filter_.T_map_imu() * T_imu_scan);
   update_.registered = true;
-  update_.score = judge.Judge(aligned.T_target_source);
-  if (update_.score.overlap < tracking.min_overlap) {
-    state_ = LocalizerState::kDeadReckoning;
-    reason_ = "the map does not show this place";
-    if (filter_.sigma_m() > tracking.max_sigma_m) Lose("too far without the map");
+  update_.score = PlaceJudge(config_.relocalize.score, map_.surfaces(), surfaces, points,
+                             scan.T_odom_imu.linear().row(2))
+                      .Judge(aligned.T_target_source);
+  if (update_.score.overlap < config_.tracking.min_overlap) {
+    GoOnWithoutMap();
     return;
   }
-  const Matrix6d information = aligned.hessian + 1e-6 * Matrix6d::Identity();
-  Matrix6d covariance = config_.relocalize.covariance_scale *
-                        information.ldlt().solve(Matrix6d(Matrix6d::Identity()));
+  const Matrix6d transport = se3::Adjoint(T_imu_scan);
+  Weigh(aligned.T_target_source * T_imu_scan.inverse(),
+        transport * CovarianceOfComparison(aligned) * transport.transpose());
+}
+
+void Localizer::GoOnWithoutMap() {
+  state_ = LocalizerState::kDeadReckoning;
+  reason_ = "the map does not show this place";
+  if (filter_.sigma_m() > config_.tracking.max_sigma_m) Lose("too far without the map");
+}
+
+/// Of an alignment, but never better than the best comparison is.
+Matrix6d Localizer::CovarianceOfComparison(const NdtResult& aligned) const {
+  const TrackingConfig& tracking = config_.tracking;
+  const double least_rad = tracking.min_sigma_deg * kRadians;
+  Matrix6d covariance = CovarianceOf(aligned, config_.relocalize.covariance_scale);
   covariance.topLeftCorner<3, 3>().diagonal().array() +=
       tracking.min_sigma_m * tracking.min_sigma_m;
-  const double least_rad = tracking.min_sigma_deg * kRadians;
   covariance.bottomRightCorner<3, 3>().diagonal().array() += least_rad * least_rad;
-  const Matrix6d transport = se3::Adjoint(T_imu_scan);
-  covariance = transport * covariance * transport.transpose();
-  const Pose T_map_imu = aligned.T_target_source * T_imu_scan.inverse();
+  return covariance;
+}
+
+/// Takes a measured pose in when it fits and is expected; else counts a contradiction.
+void Localizer::Weigh(const Pose& T_map_imu, const Matrix6d& covariance) {
+  const TrackingConfig& tracking = config_.tracking;
   update_.innovation = filter_.Distance(T_map_imu, covariance);
   const bool fits = update_.score.fit >= tracking.min_fit &&
                     update_.score.seen_through <= tracking.max_seen_through;

@@ -146,6 +146,12 @@ std::vector<Eigen::Vector3f> NdtSource::For(double resolution_m) const {
   return leaf > config_.min_leaf_m ? loop::Thinned(points_, leaf) : points_;
 }
 
+Matrix6d CovarianceOf(const NdtResult& result, double scale) {
+  constexpr double kLeastInformation = 1e-9;
+  const Matrix6d damped = result.hessian + kLeastInformation * Matrix6d::Identity();
+  return scale * damped.ldlt().solve(Matrix6d(Matrix6d::Identity()));
+}
+
 NdtResult NdtRegistration::Align(const std::vector<const NdtLevel*>& levels,
                                  const NdtSource& source, const Pose& T_target_source_guess) const {
   NdtResult result;

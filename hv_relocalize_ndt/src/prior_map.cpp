@@ -1,5 +1,7 @@
 #include "hv_relocalize_ndt/prior_map.h"
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -11,6 +13,8 @@ namespace {
 
 /// Of the tilt up to which a pose that descriptors propose agrees with gravity.
 constexpr double kUprightCosine = 0.97;
+/// Levels finer than this refine a pose that is roughly known [m].
+constexpr double kFineLevel_m = 4.0;
 
 /// Those of the alignment, then that of the surfaces.
 std::vector<double> ResolutionsOf(const RelocalizeConfig& config) {
@@ -107,6 +111,13 @@ std::vector<Pose> PriorMap::PlacesLike(const std::vector<Eigen::Vector3f>& point
 std::vector<const NdtLevel*> PriorMap::Levels() const {
   std::vector<const NdtLevel*> levels;
   for (std::size_t i = 0; i + 1 < levels_.size(); ++i) levels.push_back(&levels_[i]);
+  return levels;
+}
+
+std::vector<const NdtLevel*> PriorMap::FineLevels() const {
+  std::vector<const NdtLevel*> levels = Levels();
+  const auto coarse = [](const NdtLevel* level) { return level->resolution_m() >= kFineLevel_m; };
+  levels.erase(levels.begin(), std::find_if_not(levels.begin(), std::prev(levels.end()), coarse));
   return levels;
 }
 

@@ -79,6 +79,9 @@ class Localizer {
   void Follow(const TrackedScan& scan);
   void Search(const TrackedScan& scan);
   void Register(const TrackedScan& scan);
+  void GoOnWithoutMap();
+  Matrix6d CovarianceOfComparison(const NdtResult& aligned) const;
+  void Weigh(const Pose& T_map_imu, const Matrix6d& covariance);
   void Lose(std::string reason);
   bool Due(Time stamp, double period_s) const;
   LocalizerUpdate Taken();

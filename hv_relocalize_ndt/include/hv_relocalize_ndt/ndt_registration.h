@@ -61,6 +61,11 @@ struct NdtResult {
   Matrix6d hessian = Matrix6d::Zero();  ///< at the finest level, of a right perturbation
 };
 
+/// Covariance of the pose that an alignment has found, of a right perturbation. `scale`: for points
+/// that err alike (RelocalizeConfig::covariance_scale). Directions that nothing holds get a large
+/// one.
+Matrix6d CovarianceOf(const NdtResult& result, double scale);
+
 /// Aligns clouds to a map of Gaussians, coarse to fine, each level from the solution of the one
 /// before, by Levenberg-Marquardt on SE(3) (paper 3.4). Immutable; safe to call concurrently.
 class NdtRegistration {

@@ -39,6 +39,8 @@ class PriorMap {
   const std::vector<Eigen::Vector3f>& points() const { return points_; }
   /// Coarse to fine.
   std::vector<const NdtLevel*> Levels() const;
+  /// Of these, the ones for a pose that is known to a metre and some degrees.
+  std::vector<const NdtLevel*> FineLevels() const;
   /// Those of the search and of the score.
   const NdtLevel& surfaces() const { return levels_.back(); }
   const StructureGrid& structure() const { return *structure_; }
