@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "base_pose.h"
+#include "hv_core/pose_covariance.h"
 
 namespace hv::relocalize {
 namespace {
@@ -35,8 +35,8 @@ LocalizationReport LocalizationEngine::Add(const ScanBatch& batch) {
   report.scan = batch.header;
   report.update = Localize(batch);
   report.T_map_base = report.update.T_map_imu * batch.header.T_imu_base;
-  report.covariance =
-      CovarianceOfBase(report.update.T_map_imu, report.update.covariance, batch.header.T_imu_base);
+  report.covariance = CovarianceInMapAxes(report.update.T_map_imu, report.update.covariance,
+                                          batch.header.T_imu_base);
   report.elapsed_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   Note(report);
@@ -54,8 +54,10 @@ LocalizerUpdate LocalizationEngine::Localize(const ScanBatch& batch) {
 void LocalizationEngine::Begin(const TrackedScanHeader& scan) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (request_.forget) localizer_.Forget();
-  if (request_.T_map_base_guess) {
-    localizer_.SetGuess({*request_.T_map_base_guess * scan.T_imu_base.inverse()});
+  if (request_.guess) {
+    PoseGuess guess = *request_.guess;
+    guess.T_map_scan = guess.T_map_scan * scan.T_imu_base.inverse();
+    localizer_.SetGuess(guess);
   }
   request_ = Request();
   begun_ = requests_;
@@ -78,14 +80,14 @@ void LocalizationEngine::Note(const LocalizationReport& report) {
   answered_.notify_all();
 }
 
-void LocalizationEngine::SetGuess(const Pose& T_map_base) {
+void LocalizationEngine::SetGuess(const PoseGuess& guess) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  request_.T_map_base_guess = T_map_base;
+  request_.guess = guess;
 }
 
-std::uint64_t LocalizationEngine::Relocalize(const std::optional<Pose>& T_map_base_guess) {
+std::uint64_t LocalizationEngine::Relocalize(const std::optional<PoseGuess>& guess) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  request_ = {T_map_base_guess, true};
+  request_ = {guess, true};
   return ++requests_;
 }
 

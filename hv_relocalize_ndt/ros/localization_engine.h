@@ -47,12 +47,13 @@ class LocalizationEngine {
   /// Takes the newest scan in, after those that it has overtaken.
   LocalizationReport Add(const ScanBatch& batch);
 
-  /// About where the robot is; the next scan starts there if it fits.
-  void SetGuess(const Pose& T_map_base);
+  /// About where the robot is, with PoseGuess::T_map_scan for the pose of its base; the next scan
+  /// starts there if it fits.
+  void SetGuess(const PoseGuess& guess);
 
   /// Forgets the place; the next scan is looked for near the guess, or anywhere. Returns a number
   /// for Answer().
-  std::uint64_t Relocalize(const std::optional<Pose>& T_map_base_guess);
+  std::uint64_t Relocalize(const std::optional<PoseGuess>& guess);
 
   /// Whether that search is under way, or done.
   bool HasBegun(std::uint64_t number) const;
@@ -69,7 +70,7 @@ class LocalizationEngine {
  private:
   /// What the next scan is to begin with.
   struct Request {
-    std::optional<Pose> T_map_base_guess;
+    std::optional<PoseGuess> guess;  ///< of the base
     bool forget = false;
   };
 

@@ -71,6 +71,7 @@ void LocalizationHealth::DescribeLocalization(Status& status) {
   status.addf("sigma of the position [m]", "%.4f", lost ? 0.0 : Sigma(state.last.covariance, 0));
   status.addf("sigma of the rotation [deg]", "%.4f",
               lost ? 0.0 : kDegrees * Sigma(state.last.covariance, 3));
+  status.add("least certain", lost ? "everything" : WeakestOf(state.last.covariance));
   AddComparison(state.compared, status);
   status.addf("last comparison [ms]", "%.1f", state.comparison_ms);
   status.addf("last search [ms]", "%.1f", state.search_ms);

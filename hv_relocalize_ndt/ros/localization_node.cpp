@@ -35,8 +35,8 @@ LocalizationNode::LocalizationNode(ros::NodeHandle nh, ros::NodeHandle private_n
   ROS_INFO_STREAM("localising in " << engine_.map().name() << ", " << engine_.map().points().size()
                                    << " points");
   transforms_.Withdraw();
-  if (parameters_.T_map_base) engine_.SetGuess(*parameters_.T_map_base);
-  server_.emplace(nh, private_nh, parameters_.config.output.map_frame, engine_);
+  if (parameters_.T_map_base) engine_.SetGuess({*parameters_.T_map_base});
+  server_.emplace(nh, private_nh, parameters_.config, engine_);
   Advertise(nh);
   worker_ = std::thread([this] { Run(); });
 }

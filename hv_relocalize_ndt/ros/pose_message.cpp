@@ -1,8 +1,10 @@
 #include "pose_message.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "hv_core/pose_covariance.h"
 #include "hv_ros/conversions.h"
 
 namespace hv::relocalize {
@@ -15,6 +17,29 @@ geometry_msgs::PoseWithCovarianceStamped ToPoseWithCovariance(const Localization
   message.pose.pose = ToPoseMessage(report.T_map_base);
   CopyCovariance(report.covariance, message.pose.covariance);
   return message;
+}
+
+PoseGuess GuessFrom(const geometry_msgs::PoseWithCovariance& message,
+                    const RelocalizeConfig& least) {
+  constexpr double kSigmas = 3.0;
+  constexpr double kRadians = M_PI / 180.0;
+  const auto reach = [&](int row) {
+    const double variance = message.covariance[static_cast<std::size_t>(7 * row)];
+    return variance > 0.0 ? kSigmas * std::sqrt(variance) : 0.0;
+  };
+  PoseGuess guess;
+  guess.T_map_scan = FromRos(message.pose);
+  guess.radius_m = std::max({least.guess_radius_m, reach(0), reach(1)});
+  guess.heading_rad = std::min(M_PI, std::max(least.guess_heading_deg * kRadians, reach(5)));
+  return guess;
+}
+
+std::string WeakestOf(const Matrix6d& covariance) {
+  const WeakestDirection weakest = WeakestDirectionOf(covariance);
+  char text[96];
+  std::snprintf(text, sizeof(text), "%.3f m along (%.2f, %.2f, %.2f)", weakest.sigma_m,
+                weakest.axis.x(), weakest.axis.y(), weakest.axis.z());
+  return text;
 }
 
 std::string PlaceOf(const Pose& T_map_base) {

@@ -1,7 +1,5 @@
 #include "relocalize_server.h"
 
-#include <utility>
-
 #include <ros/console.h>
 #include <ros/init.h>
 
@@ -35,8 +33,9 @@ hv_msgs::RelocalizeResult Refusal(const std::string& reason) {
 }  // namespace
 
 RelocalizeServer::RelocalizeServer(ros::NodeHandle nh, ros::NodeHandle private_nh,
-                                   std::string map_frame, LocalizationEngine& engine)
-    : map_frame_(std::move(map_frame)),
+                                   const LocalizerConfig& config, LocalizationEngine& engine)
+    : map_frame_(config.output.map_frame),
+      config_(config.relocalize),
       engine_(engine),
       initial_pose_(nh.subscribe("initialpose", 5, &RelocalizeServer::OnInitialPose, this)),
       service_(private_nh.advertiseService("relocalize", &RelocalizeServer::OnRequest, this)),
@@ -68,9 +67,10 @@ void RelocalizeServer::OnInitialPose(
     ROS_WARN_STREAM(problem << " is not used");
     return;
   }
-  const Pose T_map_base = FromRos(message->pose.pose);
-  ROS_INFO_STREAM("the next scan is looked for near " << PlaceOf(T_map_base));
-  engine_.SetGuess(T_map_base);
+  const PoseGuess guess = GuessFrom(message->pose, config_);
+  ROS_INFO_STREAM("the next scan is looked for within " << guess.radius_m << " m of "
+                                                        << PlaceOf(guess.T_map_scan));
+  engine_.SetGuess(guess);
 }
 
 bool RelocalizeServer::OnRequest(std_srvs::TriggerRequest&, std_srvs::TriggerResponse& response) {
@@ -81,14 +81,14 @@ bool RelocalizeServer::OnRequest(std_srvs::TriggerRequest&, std_srvs::TriggerRes
 }
 
 void RelocalizeServer::OnGoal(const hv_msgs::RelocalizeGoalConstPtr& goal) {
-  std::optional<Pose> guess;
+  std::optional<PoseGuess> guess;
   if (goal->near_guess) {
     const std::string problem = ProblemOf(goal->guess.header.frame_id, goal->guess.pose);
     if (!problem.empty()) {
       action_.setAborted(Refusal(problem), problem);
       return;
     }
-    guess = FromRos(goal->guess.pose);
+    guess = PoseGuess{FromRos(goal->guess.pose)};
   }
   const auto answer = WaitForAnswer(engine_.Relocalize(guess));
   if (!answer) {

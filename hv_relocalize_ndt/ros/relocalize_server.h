@@ -21,7 +21,7 @@ namespace hv::relocalize {
 class RelocalizeServer {
  public:
   /// `engine` must outlive this object.
-  RelocalizeServer(ros::NodeHandle nh, ros::NodeHandle private_nh, std::string map_frame,
+  RelocalizeServer(ros::NodeHandle nh, ros::NodeHandle private_nh, const LocalizerConfig& config,
                    LocalizationEngine& engine);
   ~RelocalizeServer();
 
@@ -35,6 +35,7 @@ class RelocalizeServer {
   std::string ProblemOf(const std::string& frame, const geometry_msgs::Pose& pose) const;
 
   const std::string map_frame_;
+  const RelocalizeConfig config_;
   LocalizationEngine& engine_;
   std::atomic<bool> stop_{false};
   ros::Subscriber initial_pose_;

@@ -14,15 +14,30 @@ namespace {
 
 constexpr char kMagic[8] = {'H', 'V', 'N', 'D', 'T', 'L', 'E', 'V'};
 /// Grows when voxels are made in another way.
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kSumBytes = 64;
-constexpr std::size_t kVoxelBytes = (3 + 6 + 3 + 3 + 2) * 4 + 4;
+constexpr std::size_t kVoxelBytes = (3 + 6 + 6 + 3 + 3 + 2) * 4 + 4;
+
+void PutSymmetric(BinaryWriter& writer, const Eigen::Matrix3f& matrix) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) writer.Put(matrix(row, column));
+  }
+}
+
+Eigen::Matrix3f GetSymmetric(BinaryReader& reader) {
+  Eigen::Matrix3f matrix;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) {
+      matrix(row, column) = matrix(column, row) = reader.Get<float>();
+    }
+  }
+  return matrix;
+}
 
 void Put(BinaryWriter& writer, const NdtVoxel& voxel) {
   writer.Put(voxel.mean);
-  for (int row = 0; row < 3; ++row) {
-    for (int column = row; column < 3; ++column) writer.Put(voxel.information(row, column));
-  }
+  PutSymmetric(writer, voxel.information);
+  PutSymmetric(writer, voxel.held);
   writer.Put(voxel.normal);
   writer.Put(voxel.facing);
   writer.Put(voxel.thickness_m);
@@ -33,11 +48,8 @@ void Put(BinaryWriter& writer, const NdtVoxel& voxel) {
 NdtVoxel GetVoxel(BinaryReader& reader) {
   NdtVoxel voxel;
   voxel.mean = reader.GetVector();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = row; column < 3; ++column) {
-      voxel.information(row, column) = voxel.information(column, row) = reader.Get<float>();
-    }
-  }
+  voxel.information = GetSymmetric(reader);
+  voxel.held = GetSymmetric(reader);
   voxel.normal = reader.GetVector();
   voxel.facing = reader.GetVector();
   voxel.thickness_m = reader.Get<float>();

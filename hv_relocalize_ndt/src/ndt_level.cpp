@@ -48,17 +48,32 @@ Spread SpreadOf(const std::vector<Eigen::Vector3f>& points, const Numbers& numbe
   return spread;
 }
 
-NdtVoxel VoxelFrom(const Spread& spread, std::size_t points) {
+/// NdtVoxel::held along the axes. `inverse`: of the raised variances [1/m^2].
+Eigen::Vector3d HeldAlongAxes(const Spread& spread, const Eigen::Vector3d& inverse, bool planar,
+                              std::size_t points, double resolution_m) {
+  if (planar) {
+    // What the error of the normal seems to hold along the plane.
+    const double error = spread.variances[0] / static_cast<double>(points);
+    return inverse[0] *
+           Eigen::Vector3d(1.0, -error / spread.variances[1], -error / spread.variances[2]);
+  }
+  const double spread_out = 48.0 / (resolution_m * resolution_m);
+  return (inverse.array() - spread_out).cwiseMax(0.0);
+}
+
+NdtVoxel VoxelFrom(const Spread& spread, std::size_t points, double resolution_m) {
   const Eigen::Vector3d variances =
       spread.variances.cwiseMax(kLeastEigenvalueShare * spread.variances[2]);
   NdtVoxel voxel;
   voxel.mean = spread.mean.cast<float>();
-  voxel.information =
-      (spread.axes * variances.cwiseInverse().asDiagonal() * spread.axes.transpose()).cast<float>();
+  const Eigen::Vector3d inverse = variances.cwiseInverse();
+  voxel.information = (spread.axes * inverse.asDiagonal() * spread.axes.transpose()).cast<float>();
   voxel.normal = spread.axes.col(0).cast<float>();
   voxel.thickness_m = static_cast<float>(std::sqrt(spread.variances[0]));
   voxel.flatness = static_cast<float>(spread.variances[0] / spread.variances[1]);
   voxel.points = static_cast<std::uint32_t>(points);
+  const Eigen::Vector3d held = HeldAlongAxes(spread, inverse, voxel.planar(), points, resolution_m);
+  voxel.held = (spread.axes * held.asDiagonal() * spread.axes.transpose()).cast<float>();
   return voxel;
 }
 
@@ -82,15 +97,15 @@ std::pair<Numbers, Numbers> PartAtGap(const std::vector<Eigen::Vector3f>& points
 }
 
 /// The voxel of a cube, or two when it holds two planes that lie apart.
-void Fit(const std::vector<Eigen::Vector3f>& points, const Numbers& numbers,
+void Fit(const std::vector<Eigen::Vector3f>& points, const Numbers& numbers, double resolution_m,
          std::vector<NdtVoxel>& voxels) {
   const Spread all = SpreadOf(points, numbers);
-  const NdtVoxel one = VoxelFrom(all, numbers.size());
+  const NdtVoxel one = VoxelFrom(all, numbers.size(), resolution_m);
   if (one.thickness_m > kThinnestWall_m && numbers.size() >= 2 * kFewestPoints) {
     const auto [low, high] = PartAtGap(points, numbers, all);
     if (!low.empty()) {
-      const NdtVoxel below = VoxelFrom(SpreadOf(points, low), low.size());
-      const NdtVoxel above = VoxelFrom(SpreadOf(points, high), high.size());
+      const NdtVoxel below = VoxelFrom(SpreadOf(points, low), low.size(), resolution_m);
+      const NdtVoxel above = VoxelFrom(SpreadOf(points, high), high.size(), resolution_m);
       const bool parallel = std::abs(below.normal.dot(above.normal)) > kParallel;
       const bool thin = std::max(below.thickness_m, above.thickness_m) < 0.5F * one.thickness_m;
       if (below.planar() && above.planar() && parallel && thin) {
@@ -116,10 +131,11 @@ NdtLevel::NdtLevel(double resolution_m, const std::vector<Eigen::Vector3f>& poin
     cubes[place->second].push_back(i);
   }
   for (const Numbers& cube : cubes) {
-    if (cube.size() >= kFewestPoints) Fit(points, cube, voxels_);
+    if (cube.size() >= kFewestPoints) Fit(points, cube, resolution_m, voxels_);
   }
   Index();
   FindFaces();
+  FindSlivers();
 }
 
 NdtLevel::NdtLevel(double resolution_m, std::vector<NdtVoxel> voxels)
@@ -162,6 +178,22 @@ void NdtLevel::FindFaces() {
       below = below || (face && across < 0.0F);
     }
     if (above != below) voxel.facing = above ? Eigen::Vector3f(-voxel.normal) : voxel.normal;
+  }
+}
+
+/// Corners of planes that a cube cuts off look like posts.
+void NdtLevel::FindSlivers() {
+  for (NdtVoxel& voxel : voxels_) {
+    if (voxel.planar()) continue;
+    const Neighbors* around = Around(voxel.mean);
+    for (std::uint32_t k = 0; k < around->count; ++k) {
+      const NdtVoxel& plane = voxels_[around->voxels[k]];
+      const float across = plane.normal.dot(plane.mean - voxel.mean);
+      if (!plane.planar() || std::abs(across) > 0.5F * kThinnestWall_m) continue;
+      voxel.held = plane.normal.dot(voxel.information * plane.normal) * plane.normal *
+                   plane.normal.transpose();
+      break;
+    }
   }
 }
 

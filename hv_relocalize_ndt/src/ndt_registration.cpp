@@ -6,6 +6,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "hv_core/so3.h"
 #include "hv_loop_btc/submap.h"
@@ -40,12 +41,16 @@ struct WorldCost {
   }
 };
 
+/// A part of a voxel that gives a symmetric matrix.
+using VoxelMatrix = Eigen::Matrix3f NdtVoxel::*;
+
 struct Evaluation {
   const NdtLevel& target;
   RobustMixture mixture;
   const std::vector<Eigen::Vector3f>& source;
   Eigen::Matrix3f rotation;
   Eigen::Vector3f translation;
+  VoxelMatrix stiffness_of;
 
   /// Eq. 22-23 of the points [begin, end).
   WorldCost Sum(std::size_t begin, std::size_t end) const {
@@ -70,7 +75,7 @@ struct Evaluation {
         const float value = d1 * std::exp(-exponent);
         cost += value;
         force -= d2 * value * drawn;
-        stiffness -= d2 * value * voxel.information;
+        stiffness -= d2 * value * voxel.*stiffness_of;
       }
       const Eigen::Matrix3f cross = stiffness * so3::Hat(arm.cast<double>()).cast<float>();
       sum.cost += static_cast<double>(cost);
@@ -83,6 +88,36 @@ struct Evaluation {
     return sum;
   }
 };
+
+NdtCost Evaluate(const NdtLevel& target, double outlier_share,
+                 const std::vector<Eigen::Vector3f>& source, const Pose& T_target_source,
+                 VoxelMatrix stiffness_of) {
+  const Evaluation evaluation{target,
+                              RobustMixture::For(target.resolution_m(), outlier_share),
+                              source,
+                              T_target_source.linear().cast<float>(),
+                              T_target_source.translation().cast<float>(),
+                              stiffness_of};
+  const WorldCost sum = tbb::parallel_deterministic_reduce(
+      tbb::blocked_range<std::size_t>(0, source.size(), kGrain), WorldCost(),
+      [&](const tbb::blocked_range<std::size_t>& range, WorldCost partial) {
+        partial.Add(evaluation.Sum(range.begin(), range.end()));
+        return partial;
+      },
+      [](WorldCost a, const WorldCost& b) {
+        a.Add(b);
+        return a;
+      });
+  const Eigen::Matrix3d& R = T_target_source.linear();
+  NdtCost result;
+  result.cost = sum.cost;
+  result.gradient << R.transpose() * sum.force, R.transpose() * sum.torque;
+  result.hessian.topLeftCorner<3, 3>() = R.transpose() * sum.tt * R;
+  result.hessian.topRightCorner<3, 3>() = R.transpose() * sum.tr * R;
+  result.hessian.bottomLeftCorner<3, 3>() = result.hessian.topRightCorner<3, 3>().transpose();
+  result.hessian.bottomRightCorner<3, 3>() = R.transpose() * sum.rr * R;
+  return result;
+}
 
 }  // namespace
 
@@ -114,28 +149,12 @@ void NdtConfig::Validate(ConfigProblems& problems) const {
 
 NdtCost EvaluateNdt(const NdtLevel& target, double outlier_share,
                     const std::vector<Eigen::Vector3f>& source, const Pose& T_target_source) {
-  const Evaluation evaluation{target, RobustMixture::For(target.resolution_m(), outlier_share),
-                              source, T_target_source.linear().cast<float>(),
-                              T_target_source.translation().cast<float>()};
-  const WorldCost sum = tbb::parallel_deterministic_reduce(
-      tbb::blocked_range<std::size_t>(0, source.size(), kGrain), WorldCost(),
-      [&](const tbb::blocked_range<std::size_t>& range, WorldCost partial) {
-        partial.Add(evaluation.Sum(range.begin(), range.end()));
-        return partial;
-      },
-      [](WorldCost a, const WorldCost& b) {
-        a.Add(b);
-        return a;
-      });
-  const Eigen::Matrix3d& R = T_target_source.linear();
-  NdtCost result;
-  result.cost = sum.cost;
-  result.gradient << R.transpose() * sum.force, R.transpose() * sum.torque;
-  result.hessian.topLeftCorner<3, 3>() = R.transpose() * sum.tt * R;
-  result.hessian.topRightCorner<3, 3>() = R.transpose() * sum.tr * R;
-  result.hessian.bottomLeftCorner<3, 3>() = result.hessian.topRightCorner<3, 3>().transpose();
-  result.hessian.bottomRightCorner<3, 3>() = R.transpose() * sum.rr * R;
-  return result;
+  return Evaluate(target, outlier_share, source, T_target_source, &NdtVoxel::information);
+}
+
+Matrix6d InformationOf(const NdtLevel& target, double outlier_share,
+                       const std::vector<Eigen::Vector3f>& source, const Pose& T_target_source) {
+  return Evaluate(target, outlier_share, source, T_target_source, &NdtVoxel::held).hessian;
 }
 
 NdtSource::NdtSource(const NdtConfig& config, const std::vector<Eigen::Vector3f>& points)
@@ -147,9 +166,11 @@ std::vector<Eigen::Vector3f> NdtSource::For(double resolution_m) const {
 }
 
 Matrix6d CovarianceOf(const NdtResult& result, double scale) {
-  constexpr double kLeastInformation = 1e-9;
-  const Matrix6d damped = result.hessian + kLeastInformation * Matrix6d::Identity();
-  return scale * damped.ldlt().solve(Matrix6d(Matrix6d::Identity()));
+  constexpr double kLeastInformation = 1e-3;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(result.information);
+  const Vector6d variances =
+      scale * solver.eigenvalues().cwiseMax(kLeastInformation).cwiseInverse();
+  return solver.eigenvectors() * variances.asDiagonal() * solver.eigenvectors().transpose();
 }
 
 NdtResult NdtRegistration::Align(const std::vector<const NdtLevel*>& levels,
@@ -157,7 +178,11 @@ NdtResult NdtRegistration::Align(const std::vector<const NdtLevel*>& levels,
   NdtResult result;
   result.T_target_source = T_target_source_guess;
   for (const NdtLevel* level : levels) {
-    AlignLevel(*level, source.For(level->resolution_m()), result);
+    const std::vector<Eigen::Vector3f> points = source.For(level->resolution_m());
+    AlignLevel(*level, points, result);
+    if (level != levels.back()) continue;
+    result.information =
+        InformationOf(*level, config_.outlier_share, points, result.T_target_source);
   }
   return result;
 }
@@ -184,7 +209,6 @@ void NdtRegistration::AlignLevel(const NdtLevel& level, const std::vector<Eigen:
     result.T_target_source = moved;
   }
   if (!source.empty()) result.cost_per_point = at.cost / static_cast<double>(source.size());
-  result.hessian = at.hessian;
 }
 
 }  // namespace hv::relocalize

@@ -133,7 +133,9 @@ void StructureGrid::SetSize(const NdtLevel& surfaces) {
 }
 
 Eigen::Vector3i StructureGrid::CellOf(const Eigen::Vector3d& point) const {
-  return ((point - origin_) / cell_m_).array().floor().cast<int>();
+  constexpr double kFarthest = 1e8;
+  const Eigen::Array3d cell = ((point - origin_) / cell_m_).array().floor();
+  return cell.max(-kFarthest).min(kFarthest).cast<int>();
 }
 
 /// Up to kMostHeight_m above every level cube, and kBeside_m beside it, where furniture hides the

@@ -131,6 +131,50 @@ TEST_F(LocalizerTest, SilenceIsALoss) {
   ExpectAt(back, drive_.T_map_imu());
 }
 
+TEST_F(LocalizerTest, SkippedScansCarryThePoseAlong) {
+  const auto variance = [](const LocalizerUpdate& update) {
+    return update.covariance.topLeftCorner<3, 3>().trace();
+  };
+  localizer_.Add(drive_.Next());
+  LocalizerUpdate skipped;
+  for (int i = 0; i < 3; ++i) {
+    skipped = localizer_.Skip(drive_.Next());
+    EXPECT_FALSE(skipped.registered);
+  }
+  ExpectAt(skipped, drive_.T_map_imu());
+  const LocalizerUpdate compared = localizer_.Add(drive_.Next());
+  EXPECT_TRUE(compared.registered);
+  EXPECT_LT(variance(compared), variance(skipped));
+  drive_.RestartOdometry();
+  EXPECT_EQ(localizer_.Skip(drive_.Next()).state, LocalizerState::kLost);
+}
+
+TEST_F(LocalizerTest, ForgottenPlacesAreLookedForAtOnce) {
+  localizer_.Add(drive_.Next());
+  localizer_.Forget();
+  const LocalizerUpdate waiting = localizer_.Wait(drive_.now() + 0.1);
+  EXPECT_EQ(waiting.state, LocalizerState::kLost);
+  EXPECT_FALSE(waiting.reason.empty());
+  const LocalizerUpdate found = localizer_.Add(drive_.Next());
+  EXPECT_TRUE(found.searched);
+  ExpectAt(found, drive_.T_map_imu());
+}
+
+TEST_F(LocalizerTest, PosesThatAreNowhereAreALoss) {
+  localizer_.Add(drive_.Next());
+  TrackedScan nowhere = drive_.Next();
+  nowhere.T_odom_imu.translation() = Eigen::Vector3d(1e9, -1e12, 1e15);
+  LocalizerUpdate update = localizer_.Add(nowhere);
+  EXPECT_NE(update.state, LocalizerState::kTracking);
+  localizer_.SetGuess({nowhere.T_odom_imu});
+  drive_.Pause(0.5);
+  update = localizer_.Add(drive_.Next());
+  EXPECT_EQ(update.state, LocalizerState::kLost);
+  drive_.Pause(0.5);
+  update = localizer_.Add(drive_.Next());
+  ExpectAt(update, drive_.T_map_imu());
+}
+
 TEST_F(LocalizerTest, AnotherHallIsNeverAPlaceInThisOne) {
   for (int i = 0; i < 5; ++i) {
     const LocalizerUpdate update = localizer_.Add(drive_.Next(kHall + 1));

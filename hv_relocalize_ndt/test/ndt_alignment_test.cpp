@@ -146,6 +146,23 @@ INSTANTIATE_TEST_SUITE_P(Levels, OnAFloor,
                          testing::Values(FloorLimits{{1.0}, 0.1, 0.5},
                                          FloorLimits{{10.0, 5.0, 3.0, 1.0}, 2.5, 45.0}));
 
+TEST_P(OnAFloor, NothingIsHeldAlongIt) {
+  std::mt19937 random(26);
+  const Points map = Floor(25.0F, 0.0F, random);
+  const Points scan = Floor(8.0F, -1.0F, random);
+  const Pose guess = MakePose(Eigen::Matrix3d::Identity(), {0.3, 0.2, 1.0});
+  const NdtResult result = AlignTo(map, scan, guess, GetParam().resolutions_m);
+  const Matrix6d covariance = CovarianceOf(result, 1.0);
+  EXPECT_GT(covariance(0, 0), 1.0);
+  EXPECT_GT(covariance(1, 1), 1.0);
+  EXPECT_GT(covariance(5, 5), 0.1);
+  // Height and tilt are held; in the covariance itself that hides behind what is free.
+  const Matrix6d information = covariance.inverse();
+  EXPECT_GT(information(2, 2), 1e5);
+  EXPECT_GT(information(3, 3), 1e5);
+  EXPECT_GT(information(4, 4), 1e5);
+}
+
 /// A corridor of 3 m along the x axis with a floor.
 Points Corridor(float half_m, float floor_m, std::mt19937& random) {
   Points points;
@@ -179,6 +196,21 @@ TEST_P(InACorridor, AScanSlidesByLessThanASeventhOfAVoxel) {
 
 INSTANTIATE_TEST_SUITE_P(Levels, InACorridor, testing::Values(10.0, 5.0, 3.0, 1.0));
 
+TEST_P(InACorridor, LittleIsHeldAlongIt) {
+  // Turned against the axes, so that its walls cut corners of the cubes.
+  std::mt19937 random(27);
+  const Eigen::Isometry3f turn(Eigen::AngleAxisf(0.4F, Eigen::Vector3f::UnitZ()));
+  Points map = Corridor(40.0F, 0.0F, random);
+  for (Eigen::Vector3f& point : map) point = turn * point;
+  const Points scan = Corridor(15.0F, -1.0F, random);
+  Pose guess(turn.cast<double>());
+  guess.translation().z() = 1.0;
+  const NdtResult result = AlignTo(map, scan, guess, {GetParam()});
+  const Matrix6d covariance = CovarianceOf(result, 1.0);
+  EXPECT_GT(covariance(0, 0), 50.0 * 50.0 * covariance(1, 1));
+  EXPECT_GT(covariance(0, 0), 50.0 * 50.0 * covariance(2, 2));
+}
+
 TEST(AlignmentTest, EmptyCloudsLeaveTheGuess) {
   std::mt19937 random(24);
   const Points floor = Floor(5.0F, 0.0F, random);
@@ -188,7 +220,7 @@ TEST(AlignmentTest, EmptyCloudsLeaveTheGuess) {
         AlignTo(floor, {{0.0F, 0.0F, 500.0F}}, guess)}) {
     EXPECT_LT((result.T_target_source.matrix() - guess.matrix()).norm(), 1e-12);
     EXPECT_EQ(result.cost_per_point, 0.0);
-    EXPECT_TRUE(result.hessian.isZero());
+    EXPECT_TRUE(result.information.isZero());
   }
   const NdtConfig config;
   const NdtResult no_levels = NdtRegistration(config).Align({}, NdtSource(config, floor), guess);
@@ -205,7 +237,7 @@ TEST(AlignmentTest, AFewPointsComeToLieOnTheFloor) {
        {Points{below}, Points{below, ahead}, Points(7, below), Points{Eigen::Vector3f::Zero()}}) {
     const NdtResult result = AlignTo(floor, scan, guess);
     EXPECT_TRUE(result.T_target_source.matrix().allFinite());
-    EXPECT_TRUE(result.hessian.allFinite());
+    EXPECT_TRUE(result.information.allFinite());
     EXPECT_TRUE(result.T_target_source.linear().isUnitary(1e-9));
     for (const Eigen::Vector3f& point : scan) {
       EXPECT_NEAR((result.T_target_source * point.cast<double>()).z(), 0.0, 0.01);

@@ -34,6 +34,7 @@ TEST(NdtCacheTest, LevelsComeBackAsTheyWere) {
       const NdtVoxel& b = (*read)[k].voxels()[i];
       EXPECT_EQ(a.mean, b.mean);
       EXPECT_LT((a.information - b.information).norm(), 1e-5F * a.information.norm());
+      EXPECT_LE((a.held - b.held).norm(), 1e-5F * a.held.norm());
       EXPECT_EQ(a.normal, b.normal);
       EXPECT_EQ(a.facing, b.facing);
       EXPECT_EQ(a.flatness, b.flatness);

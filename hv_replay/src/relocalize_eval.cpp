@@ -142,6 +142,13 @@ struct Answer {
   std::string origin;
 };
 
+/// The error over what the covariance lets expect; 0 without a covariance.
+double ErrorInSigmas(const Answer& answer, const Pose& truth) {
+  if (answer.covariance.isZero()) return 0.0;
+  const Vector6d error = se3::Log(answer.pose.inverse() * truth);
+  return std::sqrt(error.dot(answer.covariance.ldlt().solve(error)) / 6.0);
+}
+
 class Trials {
  public:
   Trials(const RelocalizeTrials& trials, const relocalize::RelocalizeConfig& config)
@@ -217,6 +224,7 @@ class Trials {
     answered_ += answer.localized ? 1 : 0;
     if (answer.localized && truth && error_m < kSuccess_m && error_deg < kSuccess_deg) {
       errors_.push_back(error_m);
+      in_sigmas_.push_back(ErrorInSigmas(answer, *truth));
     }
     char text[300];
     std::snprintf(text, sizeof(text), ",%d,%.5f,%.5f,%.5f,%.5f,%.2f,%.4f,%.4f,%.4f,%.4f,%.2f,%s,",
@@ -237,6 +245,7 @@ class Trials {
     const Statistics errors = Summarize(errors_);
     summary.rmse_m = errors.rmse;
     summary.mean_m = errors.mean;
+    summary.error_in_sigmas = Summarize(in_sigmas_).rmse;
     const Statistics durations = Summarize(durations_);
     summary.median_ms = durations.median;
     summary.max_ms = durations.max;
@@ -254,7 +263,8 @@ class Trials {
   relocalize::GlobalLocalizer localizer_;
   std::mt19937 random_;
   std::size_t answered_ = 0;
-  std::vector<double> errors_;  ///< of the successes [m]
+  std::vector<double> errors_;     ///< of the successes [m]
+  std::vector<double> in_sigmas_;  ///< of the successes
   std::vector<double> durations_;
 };
 

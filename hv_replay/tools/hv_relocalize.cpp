@@ -11,6 +11,7 @@
 #include "hv_core/config.h"
 #include "hv_core/error.h"
 #include "hv_core/point_cloud_file.h"
+#include "hv_core/pose_covariance.h"
 #include "hv_relocalize_ndt/global_localizer.h"
 #include "hv_replay/console.h"
 #include "hv_replay/json.h"
@@ -68,25 +69,21 @@ Answer Localize(const hv::relocalize::GlobalLocalizer& localizer, const std::str
   return answer;
 }
 
-/// Covariance along the axes of the map, as in ROS messages.
-hv::Matrix6d InMapAxes(const LocalizationResult& result) {
-  hv::Matrix6d turn = hv::Matrix6d::Zero();
-  turn.topLeftCorner<3, 3>() = result.T_map_scan.linear();
-  turn.bottomRightCorner<3, 3>() = result.T_map_scan.linear();
-  return turn * result.covariance * turn.transpose();
-}
-
 JsonObject Json(const Answer& answer) {
   const LocalizationResult& result = answer.result;
   const Eigen::Vector3d& t = result.T_map_scan.translation();
   const Eigen::Quaterniond q(result.T_map_scan.linear());
-  const hv::Matrix6d covariance = InMapAxes(result);
+  const hv::Matrix6d covariance = hv::CovarianceInMapAxes(result.T_map_scan, result.covariance);
+  const hv::WeakestDirection weakest = hv::WeakestDirectionOf(covariance);
   JsonObject json;
   json.Add("cloud", answer.cloud)
       .Add("localized", result.localized)
       .Add("reason", result.reason)
       .Add("T_map_lidar", std::vector<double>{t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()})
       .Add("covariance", std::vector<double>(covariance.data(), covariance.data() + 36))
+      .Add("weakest_axis",
+           std::vector<double>{weakest.axis.x(), weakest.axis.y(), weakest.axis.z()})
+      .Add("weakest_sigma_m", weakest.sigma_m)
       .Add("score", result.score.score())
       .Add("fit", result.score.fit)
       .Add("overlap", result.score.overlap)
@@ -108,7 +105,7 @@ void PrintText(const Answer& answer) {
                                      .c_str());
   const Eigen::Vector3d& t = result.T_map_scan.translation();
   const Eigen::Matrix3d& R = result.T_map_scan.linear();
-  const hv::Matrix6d covariance = InMapAxes(result);
+  const hv::Matrix6d covariance = hv::CovarianceInMapAxes(result.T_map_scan, result.covariance);
   const Eigen::Matrix<double, 6, 1> sigma = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   std::printf("  %s  x %.3f  y %.3f  z %.3f m   roll %.2f  pitch %.2f  yaw %.2f deg\n",
               result.localized ? "T_map_lidar " : "best guess  ", t.x(), t.y(), t.z(),
@@ -117,6 +114,9 @@ void PrintText(const Answer& answer) {
   std::printf("  sigma           %.3f    %.3f    %.3f m        %.2f        %.2f       %.2f deg\n",
               sigma[0], sigma[1], sigma[2], kDegrees * sigma[3], kDegrees * sigma[4],
               kDegrees * sigma[5]);
+  const hv::WeakestDirection weakest = hv::WeakestDirectionOf(covariance);
+  std::printf("  least certain   %.3f m along (%.2f, %.2f, %.2f)\n", weakest.sigma_m,
+              weakest.axis.x(), weakest.axis.y(), weakest.axis.z());
   std::printf("  score %.2f (fit %.2f, overlap %.2f, seen through %.3f), margin %.2f, %.0f ms\n",
               result.score.score(), result.score.fit, result.score.overlap,
               result.score.seen_through, result.margin, answer.ms);

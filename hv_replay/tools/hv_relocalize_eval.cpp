@@ -61,6 +61,7 @@ void Print(const hv::replay::RelocalizeSummary& summary, bool as_json) {
         .AddCount("successes", summary.successes)
         .Add("rmse_m", summary.rmse_m)
         .Add("mean_m", summary.mean_m)
+        .Add("error_in_sigmas", summary.error_in_sigmas)
         .Add("median_ms", summary.median_ms)
         .Add("max_ms", summary.max_ms)
         .Add("load_ms", summary.load_ms);
@@ -69,8 +70,8 @@ void Print(const hv::replay::RelocalizeSummary& summary, bool as_json) {
   }
   std::printf("trials     %zu, %zu answered, %zu within 0.10 m and 3 deg\n", summary.trials,
               summary.answered, summary.successes);
-  std::printf("of these   RMSE %.2f cm, mean %.2f cm\n", 100.0 * summary.rmse_m,
-              100.0 * summary.mean_m);
+  std::printf("of these   RMSE %.2f cm, mean %.2f cm, %.2f times what the covariances say\n",
+              100.0 * summary.rmse_m, 100.0 * summary.mean_m, summary.error_in_sigmas);
   std::printf("time       %.0f ms (median), %.0f ms (most); map %.0f ms\n", summary.median_ms,
               summary.max_ms, summary.load_ms);
 }

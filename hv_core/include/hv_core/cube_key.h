@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,10 +25,14 @@ inline std::uint64_t CubeKey(const Cube& cube) {
   return (part(cube.x) << 42U) | (part(cube.y) << 21U) | part(cube.z);
 }
 
+/// The cube that holds `point` [m]; one far outside of the keys for points that are nowhere.
 inline Cube CubeOf(const Eigen::Vector3f& point, float inverse_size) {
-  return {static_cast<std::int32_t>(std::floor(point.x() * inverse_size)),
-          static_cast<std::int32_t>(std::floor(point.y() * inverse_size)),
-          static_cast<std::int32_t>(std::floor(point.z() * inverse_size))};
+  const auto cell = [inverse_size](float coordinate) {
+    constexpr float kFarthest = 1e9F;
+    const float whole = std::floor(coordinate * inverse_size);
+    return static_cast<std::int32_t>(std::max(-kFarthest, std::min(kFarthest, whole)));
+  };
+  return {cell(point.x()), cell(point.y()), cell(point.z())};
 }
 
 inline std::uint64_t CubeKey(const Eigen::Vector3f& point, float inverse_size) {

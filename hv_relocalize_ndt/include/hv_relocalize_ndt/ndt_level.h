@@ -15,7 +15,11 @@ namespace hv::relocalize {
 struct NdtVoxel {
   Eigen::Vector3f mean = Eigen::Vector3f::Zero();         ///< [m]
   Eigen::Matrix3f information = Eigen::Matrix3f::Zero();  ///< inverse covariance [1/m^2]
-  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();      ///< of the thinnest direction
+  /// The same without what only the borders of the voxel tell: planes, and slivers of them in
+  /// the next cube, hold across themselves alone, and a spread as wide as the voxel holds nothing
+  /// [1/m^2]. Small negative values balance the errors of normals.
+  Eigen::Matrix3f held = Eigen::Matrix3f::Zero();
+  Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();  ///< of the thinnest direction
   /// The normal away from a parallel plane close by: of one face of a wall or slab whose other face
   /// is known as well. Zero where nothing says which side the plane is seen from.
   Eigen::Vector3f facing = Eigen::Vector3f::Zero();
@@ -51,6 +55,7 @@ class NdtLevel {
  private:
   void Index();
   void FindFaces();
+  void FindSlivers();
 
   double resolution_m_;
   float inverse_size_;

@@ -52,13 +52,19 @@ struct NdtCost {
 NdtCost EvaluateNdt(const NdtLevel& target, double outlier_share,
                     const std::vector<Eigen::Vector3f>& source, const Pose& T_target_source);
 
+/// What `source` at `T_target_source` tells of its pose: the Gauss-Newton part of EvaluateNdt()'s
+/// Hessian with NdtVoxel::held for the Gaussians, so that nothing counts as held that only the
+/// borders of voxels hold. Right perturbation, positive semidefinite.
+Matrix6d InformationOf(const NdtLevel& target, double outlier_share,
+                       const std::vector<Eigen::Vector3f>& source, const Pose& T_target_source);
+
 /// Outcome of an alignment.
 struct NdtResult {
   Pose T_target_source = Pose::Identity();
   bool converged = false;
-  int iterations = 0;                   ///< of all levels
-  double cost_per_point = 0.0;          ///< at the finest level; levels cannot be compared
-  Matrix6d hessian = Matrix6d::Zero();  ///< at the finest level, of a right perturbation
+  int iterations = 0;                       ///< of all levels
+  double cost_per_point = 0.0;              ///< at the finest level; levels cannot be compared
+  Matrix6d information = Matrix6d::Zero();  ///< InformationOf() at the finest level
 };
 
 /// Covariance of the pose that an alignment has found, of a right perturbation. `scale`: for points

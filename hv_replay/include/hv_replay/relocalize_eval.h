@@ -40,6 +40,9 @@ struct RelocalizeSummary {
   std::size_t successes = 0;  ///< localised within 0.10 m and 3 deg (paper, Table 6)
   double rmse_m = 0.0;        ///< of the successes
   double mean_m = 0.0;
+  /// Errors of the successes as a multiple of what the covariances let expect: 1 for covariances
+  /// that are right, more where they promise too much.
+  double error_in_sigmas = 0.0;
   double median_ms = 0.0;
   double max_ms = 0.0;
   double load_ms = 0.0;  ///< of the map

@@ -1,10 +1,10 @@
-#include "base_pose.h"
+#include "hv_core/pose_covariance.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace hv::relocalize {
+namespace hv {
 namespace {
 
 Matrix6d Example() {
@@ -21,7 +21,7 @@ Vector6d Difference(const Pose& from, const Pose& to) {
   return difference;
 }
 
-TEST(CovarianceOfBase, IsThatOfPerturbedPosesInAxesOfTheMap) {
+TEST(PoseCovarianceTest, IsThatOfPerturbedPosesInAxesOfTheMap) {
   const Pose T_map_imu = MakePose(RotationFromRpy(0.2, -0.4, 2.0), Eigen::Vector3d(40, -7, 2));
   const Pose T_imu_base = MakePose(RotationFromRpy(0.0, 0.1, -1.2), Eigen::Vector3d(-0.3, 0.1, -1));
   const Matrix6d covariance = Example();
@@ -33,19 +33,29 @@ TEST(CovarianceOfBase, IsThatOfPerturbedPosesInAxesOfTheMap) {
         Difference(T_map_imu * T_imu_base, T_map_imu * se3::Exp(step) * T_imu_base);
     expected += moved * moved.transpose();
   }
-  const Matrix6d actual = CovarianceOfBase(T_map_imu, covariance, T_imu_base);
+  const Matrix6d actual = CovarianceInMapAxes(T_map_imu, covariance, T_imu_base);
   EXPECT_LT((actual - expected).cwiseAbs().maxCoeff(), 1e-2 * expected.cwiseAbs().maxCoeff());
   EXPECT_EQ((actual - actual.transpose()).cwiseAbs().maxCoeff(), 0.0);
 }
 
-TEST(CovarianceOfBase, TurnsUncertaintyAlongTheRobotIntoTheMap) {
+TEST(PoseCovarianceTest, TurnsUncertaintyAlongTheRobotIntoTheMap) {
   Matrix6d along = Matrix6d::Zero();
   along(0, 0) = 0.04;
   const Pose facing_y = MakePose(RotationFromRpy(0.0, 0.0, M_PI / 2.0), Eigen::Vector3d(1, 2, 3));
-  const Matrix6d covariance = CovarianceOfBase(facing_y, along, Pose::Identity());
+  const Matrix6d covariance = CovarianceInMapAxes(facing_y, along, Pose::Identity());
   EXPECT_NEAR(covariance(0, 0), 0.0, 1e-12);
   EXPECT_NEAR(covariance(1, 1), 0.04, 1e-12);
 }
 
+TEST(PoseCovarianceTest, WeakestDirectionOfATurnedEllipsoid) {
+  const Eigen::Matrix3d turn = RotationFromRpy(0.3, -0.2, 1.1);
+  const Eigen::Vector3d variances(0.01, 0.25, 0.0004);
+  Matrix6d covariance = Matrix6d::Identity();
+  covariance.topLeftCorner<3, 3>() = turn * variances.asDiagonal() * turn.transpose();
+  const WeakestDirection weakest = WeakestDirectionOf(covariance);
+  EXPECT_NEAR(weakest.sigma_m, 0.5, 1e-12);
+  EXPECT_NEAR(std::abs(weakest.axis.dot(turn.col(1))), 1.0, 1e-12);
+}
+
 }  // namespace
-}  // namespace hv::relocalize
+}  // namespace hv
