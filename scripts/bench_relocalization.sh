@@ -13,6 +13,8 @@ worlds=(
   "construction walk walk corridor,tunnel,campus,warehouse"
   "warehouse robot robot corridor,tunnel,campus,office"
 )
+mapped_seed=2  # of the worlds that the maps are of
+other_seed=3   # of the same worlds with everything that stands around placed anew
 offsets=(1 5 10 15)  # [m] and [deg] of the guesses, 100 trials each
 map_seconds=240
 run_seconds=300
@@ -86,12 +88,12 @@ wanted() {
   return 1
 }
 
-# simulate FOLDER WORLD TRAJECTORY SEED SECONDS [OPTION...]: a recording in the world of seed 2
+# simulate FOLDER WORLD WORLD_SEED TRAJECTORY SEED SECONDS [OPTION...]
 simulate() {
-  say "generating $2, $3 for $5 s ${*:6}"
+  say "generating $2, $4 for $6 s ${*:7}"
   rm -rf "$1"
-  "$programs/hv_sim/hv_simulate" --world "$2" --trajectory "$3" --world-seed 2 --seed "$4" \
-    --duration "$5" --out "$1" "${@:6}" >/dev/null
+  "$programs/hv_sim/hv_simulate" --world "$2" --world-seed "$3" --trajectory "$4" --seed "$5" \
+    --duration "$6" --out "$1" "${@:7}" >/dev/null
 }
 
 # scans FOLDER WORLD WORLD_SEED SEED COUNT [OPTION...]
@@ -104,7 +106,7 @@ scans() {
 make_map() {
   local folder=$data/$1
   [ -f "$folder/map/manifest.yaml" ] && return
-  simulate "$folder/recording" "$1" "$2" 2 "$map_seconds"
+  simulate "$folder/recording" "$1" "$mapped_seed" "$2" 2 "$map_seconds"
   say "$1: map"
   "$programs/hv_replay/hv_slam" --config "$root/config/hilti_2022.yaml" \
     --bag "$folder/recording/recording.bag" --out "$folder/run" --no-pictures >/dev/null 2>&1 ||
@@ -140,11 +142,11 @@ guesses() {
   done
 }
 
-# localize WORLD TRAJECTORY VARIANT SECONDS [OPTION...]
+# localize WORLD WORLD_SEED TRAJECTORY VARIANT SECONDS [OPTION...]
 localize() {
-  local folder=$out/$1/$3
-  simulate "$folder/recording" "$1" "$2" 7 "$4" "${@:5}"
-  say "$1: localisation, $3"
+  local folder=$out/$1/$4
+  simulate "$folder/recording" "$1" "$2" "$3" 7 "$5" "${@:6}"
+  say "$1: localisation, $4"
   "$programs/hv_replay/hv_localize" --map "$data/$1/map" --config "$root/config/hilti_2022.yaml" \
     --bag "$folder/recording/recording.bag" --out "$folder" >/dev/null 2>"$folder/log.txt" ||
     fail "hv_localize failed: $(tail -n 1 "$folder/log.txt")"
@@ -162,7 +164,7 @@ for world in "${worlds[@]}"; do
   mkdir -p "$out/$name"
   make_map "$name" "$mapping"
   folder=$data/$name
-  scans "$folder/scans" "$name" 2 11 50 --away-from "$folder/truth.tum"
+  scans "$folder/scans" "$name" "$mapped_seed" 11 50 --away-from "$folder/truth.tum"
   known=(--poses "$folder/scans/poses.tum" --map-truth "$folder/truth.tum")
   guesses "$name" "$folder/map" "$folder/scans" "${known[@]}"
   say "$name: a map that has changed, and no guess"
@@ -173,9 +175,10 @@ for world in "${worlds[@]}"; do
     scans "$data/elsewhere_$other" "$other" 5 3 25 --distance 0
     trials "$name" "$folder/map" "$data/elsewhere_$other" "elsewhere_$other"
   done
-  localize "$name" "$driving" drive "$run_seconds"
-  localize "$name" "$driving" blackout "$fault_seconds" --fault "$lidar_gap"
-  localize "$name" "$driving" kidnapped "$fault_seconds" --fault "$kidnap"
+  localize "$name" "$mapped_seed" "$driving" drive "$run_seconds"
+  localize "$name" "$mapped_seed" "$driving" blackout "$fault_seconds" --fault "$lidar_gap"
+  localize "$name" "$mapped_seed" "$driving" kidnapped "$fault_seconds" --fault "$kidnap"
+  localize "$name" "$other_seed" "$driving" refurnished "$fault_seconds"
 done
 for entry in "${real[@]}"; do
   read -r name folder <<<"$entry"

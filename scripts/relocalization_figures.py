@@ -55,6 +55,8 @@ class Run:
     error_deg: np.ndarray
     lost_s: list[float]      # moments at which the place was lost
     track_ms: float          # median of a comparison with the map
+    localized_share: float   # of the scans
+    first_pose_s: float      # after the first scan
 
     def growth_m(self) -> float:
         """Mean error of the last fifth of the run less that of the first."""
@@ -105,4 +107,5 @@ def read_run(folder: Path, map_folder: Path) -> Run:
                 if row["state"] == "lost"]
     summary = json.loads((folder / "summary.json").read_text())
     return Run(stamps - start, np.linalg.norm(error[:, :3, 3], axis=1), angles(error[:, :3, :3]),
-               lost, summary["track_ms"]["median"])
+               lost, summary["track_ms"]["median"], summary["localized"] / summary["scans"],
+               summary["first_pose_s"])

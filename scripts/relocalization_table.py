@@ -112,6 +112,13 @@ def drive_row(arguments: argparse.Namespace, name: str, report: Report) -> list[
     return cells
 
 
+def refurnished_row(arguments: argparse.Namespace, name: str) -> list[str]:
+    run = read_run(arguments.results / name / "refurnished", arguments.data / name)
+    return [name, f"{100 * run.localized_share:.1f}", f"{run.first_pose_s:.1f}",
+            f"{100 * run.error_m.mean():.2f}", f"{100 * run.error_m.max():.1f}",
+            f"{run.error_deg.mean():.3f}"]
+
+
 def make_report(arguments: argparse.Namespace) -> Report:
     report = Report()
     report.text(machine(2).replace("2 thread(s) a scan.", "all used."))
@@ -134,6 +141,10 @@ def make_report(arguments: argparse.Namespace) -> Report:
                       "growth [cm]", "none", "comparison [ms]", "lost in blackout",
                       "back after [s]", "< 5 s", "lost when kidnapped", "back after [s]", "< 5 s"],
                      [drive_row(arguments, name, report) for name in arguments.world])
+        report.text("### While driving, with everything that stands around placed anew")
+        report.table(["map", "localised [% of scans]", "first place after [s]", "mean [cm]",
+                      "max [cm]", "mean [deg]"],
+                     [refurnished_row(arguments, name) for name in arguments.world])
     report.text(f"{report.checked - len(report.missed)} of {report.checked} limits reached.")
     for missed in report.missed:
         report.lines.append(f"- missed: {missed}")
