@@ -76,13 +76,16 @@ def anywhere_row(arguments: argparse.Namespace, name: str, report: Report) -> li
     elsewhere = [read_trials(path) for path in sorted(folder.glob("elsewhere_*.csv"))]
     asked = sum(len(one.ms) for one in elsewhere)
     accepted = int(sum(np.count_nonzero(one.localized > 0) for one in elsewhere))
-    slowest = max(float(one.ms.max()) for one in [trials, *elsewhere])
+    slowest = float(trials.ms.max())
+    refusals = "-"
     if asked:
         report.verdict(f"{name}: {accepted} false acceptances", accepted == 0)
         report.verdict(f"{name}: slowest answer {slowest:.0f} ms", slowest < FIRST_POSE_MS)
+        refused_ms = np.concatenate([one.ms for one in elsewhere])
+        refusals = f"{np.median(refused_ms):.0f} / {refused_ms.max():.0f}"
     return [name, f"{found} of {len(trials.ms)}", verdict, str(wrong),
             f"{100 * trials.rmse_m():.2f}", f"{np.median(trials.ms):.0f} / {slowest:.0f}",
-            f"{accepted} of {asked}" if asked else "-"]
+            f"{accepted} of {asked}" if asked else "-", refusals]
 
 
 def changed_row(arguments: argparse.Namespace, name: str, report: Report) -> list[str]:
@@ -129,7 +132,7 @@ def make_report(arguments: argparse.Namespace) -> Report:
                   "RMSE at 1 m [cm]", "median [ms]"], rows)
     report.text("### Without a guess")
     report.table(["map", "found", "all", "wrong", "RMSE [cm]", "median / slowest [ms]",
-                  "accepted from elsewhere"],
+                  "accepted from elsewhere", "refused in: median / slowest [ms]"],
                  [anywhere_row(arguments, name, report)
                   for name in arguments.world + arguments.real])
     if arguments.world:

@@ -4,6 +4,9 @@
 #include <set>
 #include <utility>
 
+#include <yaml-cpp/yaml.h>
+
+#include "hv_core/config.h"
 #include "hv_core/error.h"
 
 namespace hv::loop {
@@ -72,6 +75,20 @@ SavedSession LoadSession(const MapFolder& map) {
   CheckKeyframes(session);
   CheckSubmaps(session);
   return session;
+}
+
+std::optional<BtcConfig> DescriptorConfigOf(const MapManifest& manifest) {
+  BtcConfig config;
+  try {
+    const YAML::Node all = ParseYaml(manifest.configuration, "manifest.yaml");
+    if (!all.IsMap() || !all["loop"]) return std::nullopt;
+    const YAML::Node loop = all["loop"];
+    if (!loop.IsMap() || !loop["btc"]) return std::nullopt;
+    ReadConfig(loop["btc"], "manifest.yaml", config);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+  return config;
 }
 
 SavedSession NumberedAfter(const SavedSession& before, SavedSession session) {

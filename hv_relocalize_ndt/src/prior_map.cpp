@@ -46,7 +46,9 @@ PriorMap PriorMap::Load(const std::string& path, const RelocalizeConfig& config)
   if (folder.is_plain_cloud()) return PriorMap(path, std::move(points), config);
   PriorMap map(path, std::move(points), config, LevelsIn(folder, config));
   const MapContents contents = folder.contents();
-  if (contents.graph && contents.descriptors) map.UseSession(loop::LoadSession(folder));
+  if (!contents.graph || !contents.descriptors) return map;
+  const auto descriptors = loop::DescriptorConfigOf(folder.manifest());
+  if (descriptors) map.UseSession(loop::LoadSession(folder), *descriptors);
   return map;
 }
 
@@ -70,8 +72,9 @@ PriorMap::PriorMap(std::string name, std::vector<Eigen::Vector3f> points,
   structure_ = std::make_unique<StructureGrid>(surfaces(), config.search.depth);
 }
 
-void PriorMap::UseSession(loop::SavedSession session) {
-  descriptors_ = std::make_unique<loop::BtcDatabase>(config_.btc);
+void PriorMap::UseSession(loop::SavedSession session, const loop::BtcConfig& config) {
+  descriptor_config_ = config;
+  descriptors_ = std::make_unique<loop::BtcDatabase>(config);
   std::map<std::uint32_t, Pose> poses;
   for (const GraphVertex& vertex : session.graph.vertices) poses[vertex.id] = vertex.T_map_imu;
   for (std::size_t i = 0; i < session.submaps.records.size(); ++i) {
@@ -87,7 +90,7 @@ std::vector<Pose> PriorMap::PlacesLike(const std::vector<Eigen::Vector3f>& point
   loop::Submap submap;
   submap.up = up;
   submap.points = points;
-  loop::BtcExtractor extractor(config_.btc);
+  loop::BtcExtractor extractor(descriptor_config_);
   extractor.SetScale(session_->submaps.scale);
   const loop::BtcDescriptor descriptor = extractor.Extract(submap);
   loop::BtcDatabase::Filter filter;

@@ -28,7 +28,6 @@ void RelocalizeConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("search", search, "search over the structure of the map");
   visitor.Section("score", score, "how the fit of a place is measured");
   visitor.Section("accept", accept, "when a place counts as found");
-  visitor.Section("btc", btc, "boundary triangle descriptors, as the map was made with");
   visitor.Field("descriptor_candidates", descriptor_candidates,
                 "places proposed by the descriptors of the map");
   visitor.Field("guess_radius_m", guess_radius_m, "how far a guess may be off [m]");
@@ -42,7 +41,6 @@ void RelocalizeConfig::Validate(ConfigProblems& problems) const {
   search.Validate(problems);
   score.Validate(problems);
   accept.Validate(problems);
-  btc.Validate(problems);
   problems.Require(descriptor_candidates >= 0, "localization.descriptor_candidates",
                    "must not be negative");
   problems.Require(guess_radius_m > 0.0, "localization.guess_radius_m", "must be positive");

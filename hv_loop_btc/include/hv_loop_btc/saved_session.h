@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "hv_core/map_folder.h"
 #include "hv_core/pose_graph_data.h"
+#include "hv_loop_btc/btc_descriptor.h"
 #include "hv_loop_btc/submap_file.h"
 
 namespace hv::loop {
@@ -22,6 +24,10 @@ struct SavedSession {
 /// Reads graph and submaps. Throws InputError when keyframes, graph or descriptors are missing,
 /// damaged, or do not belong together. The clouds are not read: MapFolder::Verify() does.
 SavedSession LoadSession(const MapFolder& map);
+
+/// How the descriptors of a map were made, by the section `loop.btc` of the configuration in its
+/// manifest; nothing when that cannot be read.
+std::optional<BtcConfig> DescriptorConfigOf(const MapManifest& manifest);
 
 /// The session with ids of its own: they follow those of `before`, and so does the way travelled.
 SavedSession NumberedAfter(const SavedSession& before, SavedSession session);

@@ -60,10 +60,11 @@ class PriorMap {
   std::unique_ptr<StructureGrid> structure_;
   PriorMap(std::string name, std::vector<Eigen::Vector3f> points, const RelocalizeConfig& config,
            const LevelFile& file);
-  void UseSession(loop::SavedSession session);
+  void UseSession(loop::SavedSession session, const loop::BtcConfig& config);
 
   RelocalizeConfig config_;
   std::optional<loop::SavedSession> session_;
+  loop::BtcConfig descriptor_config_;  ///< that the map was made with
   std::unique_ptr<loop::BtcDatabase> descriptors_;
   std::vector<Pose> T_map_submap_;  ///< of each descriptor
 };

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "hv_core/config.h"
-#include "hv_loop_btc/btc_descriptor.h"
 #include "hv_relocalize_ndt/ndt_registration.h"
 #include "hv_relocalize_ndt/place_score.h"
 #include "hv_relocalize_ndt/pose_search.h"
@@ -25,7 +24,6 @@ struct RelocalizeConfig {
   PoseSearchConfig search;
   PlaceScoreConfig score;
   AcceptanceConfig accept;
-  loop::BtcConfig btc;
   int descriptor_candidates = 5;
   double guess_radius_m = 18.0;
   double guess_heading_deg = 25.0;
