@@ -2,9 +2,7 @@
 # Measures loop closing on generated sequences with revisits and prints one table.
 set -euo pipefail
 
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-build=${HV_BUILD_DIR:-$root/build}
-programs=$build/devel/lib
+source "$(dirname "${BASH_SOURCE[0]}")/bench_common.sh"
 
 # name, world, trajectory, seconds left out, seconds, distance of the places of a loop [m]; what is
 # left out on the campus is a stretch that the route does not come back to
@@ -33,51 +31,15 @@ The programs are those of scripts/setup.sh.
 USAGE
 }
 
-fail() {
-  echo "bench_loop: $1" >&2
-  exit 1
-}
-
 data=$build/bench/loop_data
 out=$build/bench/loop_results
-only=()
-run=yes
-table=()
-while (($# > 0)); do
-  needs=1
-  case $1 in
-    -h | --help) usage; exit 0 ;;
-    --table-only) needs=0 ;;
-    --peer) needs=2 ;;
-  esac
-  (($# > needs)) || fail "$1 needs $needs argument(s) (--help lists the options)"
-  case $1 in
-    --data) data=$2 ;;
-    --out) out=$2 ;;
-    --peer) table+=(--peer "$2" "$3") ;;
-    --only) only+=("$2") ;;
-    --table-only) run= ;;
-    --markdown) table+=(--markdown "$2") ;;
-    *) fail "unknown option $1 (--help lists the options)" ;;
-  esac
-  shift $((needs + 1))
-done
-
-for program in hv_sim/hv_simulate hv_replay/hv_slam hv_replay/hv_ape; do
-  [ -x "$programs/$program" ] || fail "$programs/$program is missing: run scripts/setup.sh first"
-done
-
-wanted() {
-  ((${#only[@]} == 0)) && return 0
-  local name
-  for name in "${only[@]}"; do [ "$name" = "$1" ] && return 0; done
-  return 1
-}
+parse_options "$@"
+require hv_sim/hv_simulate hv_replay/hv_slam hv_replay/hv_ape
 
 # generate NAME WORLD TRAJECTORY SKIP SECONDS
 generate() {
   [ -f "$data/$1/recording.bag" ] && [ -f "$data/$1/truth.tum" ] && return
-  echo "bench_loop: generating $1 ($5 s)" >&2
+  say "generating $1 ($5 s)"
   rm -rf "$data/$1.part"
   "$programs/hv_sim/hv_simulate" --world "$2" --trajectory "$3" --skip "$4" --duration "$5" --seed 2 \
     --out "$data/$1.part" >/dev/null
@@ -88,7 +50,7 @@ generate() {
 # slam NAME VARIANT [OPTION...]
 slam() {
   local result=$out/$1/$2 bag=$data/$1/recording.bag
-  echo "bench_loop: $1, $2" >&2
+  say "$1, $2"
   rm -rf "$result"
   mkdir -p "$result"
   shift 2
@@ -111,5 +73,4 @@ for sequence in "${sequences[@]}"; do
 done
 [ -n "$found" ] || fail "no sequence is named ${only[*]}"
 
-exec /usr/bin/python3 -B "$root/scripts/loop_table.py" --results "$out" --data "$data" \
-  --ape "$programs/hv_replay/hv_ape" "${table[@]}"
+print_table loop_table.py --ape "$programs/hv_replay/hv_ape"

@@ -2,9 +2,7 @@
 # Measures the odometry on generated sequences, beside other programs' results, and prints one table.
 set -euo pipefail
 
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-build=${HV_BUILD_DIR:-$root/build}
-programs=$build/devel/lib
+source "$(dirname "${BASH_SOURCE[0]}")/bench_common.sh"
 
 # name, world, trajectory, seconds
 sequences=(
@@ -37,56 +35,25 @@ The programs are those of scripts/setup.sh.
 USAGE
 }
 
-fail() {
-  echo "bench_odometry: $1" >&2
-  exit 1
-}
-
 data=$build/bench/data
 out=$build/bench/results
 kitti=
 threads=1
-only=()
-run=yes
-table=()
-while (($# > 0)); do
-  needs=1
+own_option() {
   case $1 in
-    -h | --help) usage; exit 0 ;;
-    --table-only) needs=0 ;;
-    --peer) needs=2 ;;
-  esac
-  (($# > needs)) || fail "$1 needs $needs argument(s) (--help lists the options)"
-  case $1 in
-    --data) data=$2 ;;
-    --out) out=$2 ;;
-    --peer) table+=(--peer "$2" "$3") ;;
     --kitti) kitti=$2 ;;
     --threads) threads=$2 ;;
-    --only) only+=("$2") ;;
-    --table-only) run= ;;
-    --markdown) table+=(--markdown "$2") ;;
-    *) fail "unknown option $1 (--help lists the options)" ;;
+    *) return 1 ;;
   esac
-  shift $((needs + 1))
-done
-
-for program in hv_sim/hv_simulate hv_replay/hv_slam hv_replay/hv_ape hv_replay/hv_parameters \
-  hv_replay/hv_kitti_to_bag; do
-  [ -x "$programs/$program" ] || fail "$programs/$program is missing: run scripts/setup.sh first"
-done
-
-wanted() {
-  ((${#only[@]} == 0)) && return 0
-  local name
-  for name in "${only[@]}"; do [ "$name" = "$1" ] && return 0; done
-  return 1
 }
+parse_options "$@"
+require hv_sim/hv_simulate hv_replay/hv_slam hv_replay/hv_ape hv_replay/hv_parameters \
+  hv_replay/hv_kitti_to_bag
 
 # generate NAME WORLD TRAJECTORY SECONDS
 generate() {
   [ -f "$data/$1/recording.bag" ] && [ -f "$data/$1/truth.tum" ] && return
-  echo "bench_odometry: generating $1 ($4 s)" >&2
+  say "generating $1 ($4 s)"
   rm -rf "$data/$1.part"
   "$programs/hv_sim/hv_simulate" --world "$2" --trajectory "$3" --duration "$4" --seed 1 \
     --out "$data/$1.part" >/dev/null
@@ -116,7 +83,7 @@ slam() {
 # run_cell NAME LABEL CELL_SIZE
 run_cell() {
   local result=$out/hv_lio/$1/leaf$2
-  echo "bench_odometry: $1, cells of $3 m" >&2
+  say "$1, cells of $3 m"
   rm -rf "$result"
   mkdir -p "$result"
   cp "$root/config/hilti_2022.yaml" "$result/input.yaml"
@@ -129,7 +96,7 @@ run_memory() {
   local timing=$out/hv_lio/$memory_sequence/leaf050/timing.csv result=$out/memory capacity
   capacity=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "voxels") column = i }
     NR > 1 { voxels[NR] = $column } END { printf "%d", 0.9 * voxels[int(NR / 5)] }' "$timing")
-  echo "bench_odometry: $memory_sequence with a table of $capacity voxels" >&2
+  say "$memory_sequence with a table of $capacity voxels"
   rm -rf "$result"
   mkdir -p "$result"
   cp "$root/config/hilti_2022.yaml" "$result/input.yaml"
@@ -140,7 +107,7 @@ run_memory() {
 
 run_kitti() {
   local result=$out/kitti
-  echo "bench_odometry: KITTI without IMU" >&2
+  say "KITTI without IMU"
   rm -rf "$result"
   mkdir -p "$result"
   "$programs/hv_replay/hv_kitti_to_bag" --input "$kitti" --out "$result/recording.bag" >/dev/null
@@ -173,6 +140,5 @@ fi
 # shellcheck disable=SC2016
 default_cell=$("$programs/hv_replay/hv_parameters" |
   sed -n 's/^| `odometry.preprocess.cell_size_m` | `\([^`]*\)`.*/\1/p')
-exec /usr/bin/python3 -B "$root/scripts/odometry_table.py" --results "$out" --data "$data" \
-  --ape "$programs/hv_replay/hv_ape" --default-cell "$default_cell" --threads "$threads" \
-  "${table[@]}"
+print_table odometry_table.py --ape "$programs/hv_replay/hv_ape" --default-cell "$default_cell" \
+  --threads "$threads"

@@ -2,9 +2,7 @@
 # Measures relocalisation and localisation in saved maps and prints one table.
 set -euo pipefail
 
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-build=${HV_BUILD_DIR:-$root/build}
-programs=$build/devel/lib
+source "$(dirname "${BASH_SOURCE[0]}")/bench_common.sh"
 
 # name, trajectory of the run that makes the map, trajectory of the other runs, worlds that queries
 # come from which are not in the map
@@ -41,52 +39,18 @@ The programs are those of scripts/setup.sh; with -DHV_BENCHMARKS=ON the NDT of P
 USAGE
 }
 
-fail() {
-  echo "bench_relocalization: $1" >&2
-  exit 1
-}
-
 data=$build/bench/relocalization_data
 out=$build/bench/relocalization_results
-only=()
 real=()
-run=yes
-table=()
-while (($# > 0)); do
-  needs=1
-  case $1 in
-    -h | --help) usage; exit 0 ;;
-    --table-only) needs=0 ;;
-    --peer | --real) needs=2 ;;
-  esac
-  (($# > needs)) || fail "$1 needs $needs argument(s) (--help lists the options)"
-  case $1 in
-    --data) data=$2 ;;
-    --out) out=$2 ;;
-    --real) real+=("$2 $3") ;;
-    --peer) table+=(--peer "$2" "$3") ;;
-    --only) only+=("$2") ;;
-    --table-only) run= ;;
-    --markdown) table+=(--markdown "$2") ;;
-    *) fail "unknown option $1 (--help lists the options)" ;;
-  esac
-  shift $((needs + 1))
-done
-
-for program in hv_sim/hv_simulate hv_sim/hv_simulate_scans hv_replay/hv_slam hv_replay/hv_localize \
-  hv_replay/hv_relocalize_eval; do
-  [ -x "$programs/$program" ] || fail "$programs/$program is missing: run scripts/setup.sh first"
-done
-pcl=$programs/hv_relocalize_ndt/pcl_ndt_trials
-
-say() { echo "bench_relocalization: $*" >&2; }
-
-wanted() {
-  ((${#only[@]} == 0)) && return 0
-  local name
-  for name in "${only[@]}"; do [ "$name" = "$1" ] && return 0; done
-  return 1
+values[--real]=2
+own_option() {
+  [ "$1" = --real ] || return 1
+  real+=("$2 $3")
 }
+parse_options "$@"
+require hv_sim/hv_simulate hv_sim/hv_simulate_scans hv_replay/hv_slam hv_replay/hv_localize \
+  hv_replay/hv_relocalize_eval
+pcl=$programs/hv_relocalize_ndt/pcl_ndt_trials
 
 # simulate FOLDER WORLD WORLD_SEED TRAJECTORY SEED SECONDS [OPTION...]
 simulate() {
@@ -191,5 +155,4 @@ for entry in "${real[@]}"; do
 done
 [ -n "$found" ] || fail "no world is named ${only[*]}"
 
-exec /usr/bin/python3 -B "$root/scripts/relocalization_table.py" --results "$out" --data "$data" \
-  "${table[@]}"
+print_table relocalization_table.py

@@ -1,0 +1,64 @@
+# What the benchmark scripts share; they source it. Each defines usage, the folders data and out, and
+# own_option where it has options of its own.
+# shellcheck shell=bash disable=SC2034
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+build=${HV_BUILD_DIR:-$root/build}
+programs=$build/devel/lib
+bench=$(basename "$0" .sh)
+
+only=()   # names that are wanted; empty: all
+run=yes   # empty: only the table
+table=()  # arguments of the script that prints it
+declare -A values=([--table-only]=0 [--peer]=2)  # of options; others have one
+
+say() { echo "$bench: $*" >&2; }
+
+fail() {
+  say "$1"
+  exit 1
+}
+
+# own_option OPTION VALUE...: takes an option that only one script has; fails when it is unknown
+own_option() { return 1; }
+
+# parse_options ARGUMENT...
+parse_options() {
+  local needs
+  while (($# > 0)); do
+    case $1 in -h | --help) usage; exit 0 ;; esac
+    needs=${values[$1]:-1}
+    (($# > needs)) || fail "$1 needs $needs argument(s) (--help lists the options)"
+    case $1 in
+      --data) data=$2 ;;
+      --out) out=$2 ;;
+      --only) only+=("$2") ;;
+      --peer) table+=(--peer "$2" "$3") ;;
+      --table-only) run= ;;
+      --markdown) table+=(--markdown "$2") ;;
+      *) own_option "$@" || fail "unknown option $1 (--help lists the options)" ;;
+    esac
+    shift $((needs + 1))
+  done
+}
+
+# require PROGRAM...: paths below the folder of the programs
+require() {
+  local program
+  for program in "$@"; do
+    [ -x "$programs/$program" ] || fail "$programs/$program is missing: run scripts/setup.sh first"
+  done
+}
+
+# wanted NAME
+wanted() {
+  ((${#only[@]} == 0)) && return 0
+  local name
+  for name in "${only[@]}"; do [ "$name" = "$1" ] && return 0; done
+  return 1
+}
+
+# print_table SCRIPT [ARGUMENT...]: with what has been gathered in `table`
+print_table() {
+  exec /usr/bin/python3 -B "$root/scripts/$1" --results "$out" --data "$data" "${@:2}" "${table[@]}"
+}
