@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "hv_relocalize_ndt/refinement.h"
+
 namespace hv::relocalize {
 namespace {
 
@@ -99,13 +101,17 @@ std::vector<LocalizationCandidate> GlobalLocalizer::ProposeByDescriptors(const S
   return candidates;
 }
 
-void GlobalLocalizer::Refine(const Scan& scan,
-                             std::vector<LocalizationCandidate>& candidates) const {
+void GlobalLocalizer::FollowUp(const Scan& scan,
+                               std::vector<LocalizationCandidate>& candidates) const {
   for (LocalizationCandidate& candidate : candidates) {
-    const auto levels = candidate.origin == "guess" ? map_.Levels() : map_.FineLevels();
-    candidate.T_map_scan =
-        registration_.Align(levels, scan.source, candidate.T_map_scan).T_target_source;
-    candidate.score = scan.judge.Judge(candidate.T_map_scan);
+    if (candidate.origin == "guess") {
+      candidate.T_map_scan =
+          registration_.Align(map_.Levels(), scan.source, candidate.T_map_scan).T_target_source;
+    }
+    const Refinement refined =
+        Refine(map_, registration_, scan.source, scan.judge, candidate.T_map_scan);
+    candidate.T_map_scan = refined.aligned.T_target_source;
+    candidate.score = refined.score;
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const LocalizationCandidate& a, const LocalizationCandidate& b) {
@@ -150,7 +156,7 @@ std::string GlobalLocalizer::WhyNot(const LocalizationResult& result) const {
 LocalizationResult GlobalLocalizer::Locate(const LocalizationQuery& query) const {
   const Scan scan(config_, map_.surfaces(), query);
   std::vector<LocalizationCandidate> candidates = Propose(query, scan);
-  Refine(scan, candidates);
+  FollowUp(scan, candidates);
   LocalizationResult result;
   for (const LocalizationCandidate& candidate : candidates) {
     const bool known =

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hv_relocalize_ndt/refinement.h"
+
 namespace hv::relocalize {
 namespace {
 
@@ -139,14 +141,14 @@ void Localizer::Register(const TrackedScan& scan) {
   last_comparison_ = scan.stamp;
   const Pose T_imu_scan = Shift(scan.lidar_in_imu);
   const std::vector<Eigen::Vector3f> points = SeenFromLidar(scan);
-  const NdtResult aligned =
-      registration_.Align(map_.FineLevels(), NdtSource(config_.relocalize.ndt, points),
-                          filter_.T_map_imu() * T_imu_scan);
   const NdtLevel surfaces(map_.surfaces().resolution_m(), points);
+  const PlaceJudge judge(config_.relocalize.score, map_.surfaces(), surfaces, points,
+                         scan.T_odom_imu.linear().row(2));
+  const auto [aligned, score] =
+      Refine(map_, registration_, NdtSource(config_.relocalize.ndt, points), judge,
+             filter_.T_map_imu() * T_imu_scan);
   update_.registered = true;
-  update_.score = PlaceJudge(config_.relocalize.score, map_.surfaces(), surfaces, points,
-                             scan.T_odom_imu.linear().row(2))
-                      .Judge(aligned.T_target_source);
+  update_.score = score;
   if (update_.score.overlap < config_.tracking.min_overlap) {
     GoOnWithoutMap();
     return;

@@ -67,7 +67,7 @@ class GlobalLocalizer {
                                              const Scan& scan) const;
   PoseWindow WindowFor(const LocalizationQuery& query, const Scan& scan) const;
   std::vector<LocalizationCandidate> ProposeByDescriptors(const Scan& scan) const;
-  void Refine(const Scan& scan, std::vector<LocalizationCandidate>& candidates) const;
+  void FollowUp(const Scan& scan, std::vector<LocalizationCandidate>& candidates) const;
   void Measure(const Scan& scan, LocalizationResult& result) const;
   std::string WhyNot(const LocalizationResult& result) const;
 
