@@ -4,17 +4,17 @@ set -euo pipefail
 
 source "$(dirname "${BASH_SOURCE[0]}")/bench_common.sh"
 
-# name, trajectory of the run that makes the map, trajectory of the other runs, worlds that queries
-# come from which are not in the map
+# name, trajectory of the run that makes the map and its seconds: all of the route, trajectory of the
+# other runs, worlds that queries come from which are not in the map
 worlds=(
-  "office walk robot corridor,tunnel,campus,warehouse"
-  "construction walk walk corridor,tunnel,campus,warehouse"
-  "warehouse robot robot corridor,tunnel,campus,office"
+  "office walk 240 robot corridor,tunnel,campus,warehouse"
+  "construction walk 240 walk corridor,tunnel,campus,warehouse"
+  "warehouse robot 600 robot corridor,tunnel,campus,office"
 )
 mapped_seed=2  # of the worlds that the maps are of
 other_seed=3   # of the same worlds with everything that stands around placed anew
 offsets=(1 5 10 15)  # [m] and [deg] of the guesses, 100 trials each
-map_seconds=240
+part_seconds=90  # of a run that maps only a part of the world
 run_seconds=300
 fault_seconds=120
 lidar_gap="lidar_gap:start=40,duration=10"
@@ -66,12 +66,12 @@ scans() {
     --seed "$4" --count "$5" --out "$1" "${@:6}" >/dev/null
 }
 
-# make_map WORLD TRAJECTORY
+# make_map FOLDER WORLD TRAJECTORY SECONDS
 make_map() {
-  local folder=$data/$1
+  local folder=$1
   [ -f "$folder/map/manifest.yaml" ] && return
-  simulate "$folder/recording" "$1" "$mapped_seed" "$2" 2 "$map_seconds"
-  say "$1: map"
+  simulate "$folder/recording" "$2" "$mapped_seed" "$3" 2 "$4"
+  say "$2: map"
   "$programs/hv_replay/hv_slam" --config "$root/config/hilti_2022.yaml" \
     --bag "$folder/recording/recording.bag" --out "$folder/run" --no-pictures >/dev/null 2>&1 ||
     fail "hv_slam failed on $folder/recording"
@@ -120,14 +120,15 @@ localize() {
 mkdir -p "$data" "$out"
 found=
 for world in "${worlds[@]}"; do
-  read -r name mapping driving others <<<"$world"
+  read -r name mapping map_seconds driving others <<<"$world"
   wanted "$name" || continue
   found=yes
   table+=(--world "$name")
   [ -n "$run" ] || continue
   mkdir -p "$out/$name"
-  make_map "$name" "$mapping"
   folder=$data/$name
+  make_map "$folder" "$name" "$mapping" "$map_seconds"
+  make_map "$folder/part" "$name" "$mapping" "$part_seconds"
   scans "$folder/scans" "$name" "$mapped_seed" 11 50 --away-from "$folder/truth.tum"
   known=(--poses "$folder/scans/poses.tum" --map-truth "$folder/truth.tum")
   guesses "$name" "$folder/map" "$folder/scans" "${known[@]}"
@@ -135,6 +136,8 @@ for world in "${worlds[@]}"; do
   trials "$name" "$folder/map" "$folder/scans" changed "${known[@]}" --count 100 --perturb 1 1 \
     --guess-window 1.7 2.2 --changed-share 0.2
   trials "$name" "$folder/map" "$folder/scans" anywhere "${known[@]}"
+  trials "$name" "$folder/part/map" "$folder/scans" part --poses "$folder/scans/poses.tum" \
+    --map-truth "$folder/part/truth.tum"
   for other in ${others//,/ }; do
     scans "$data/elsewhere_$other" "$other" 5 3 25 --distance 0
     trials "$name" "$folder/map" "$data/elsewhere_$other" "elsewhere_$other"

@@ -77,15 +77,19 @@ def anywhere_row(arguments: argparse.Namespace, name: str, report: Report) -> li
     asked = sum(len(one.ms) for one in elsewhere)
     accepted = int(sum(np.count_nonzero(one.localized > 0) for one in elsewhere))
     slowest = float(trials.ms.max())
-    refusals = "-"
+    refusals = part = "-"
     if asked:
+        astray = read_trials(folder / "part.csv")
+        in_part = int(np.count_nonzero((astray.localized > 0) & ~astray.successes()))
+        part = f"{in_part} of {len(astray.ms)}"
+        report.verdict(f"{name}: {in_part} wrong in the map of a part", in_part == 0)
         report.verdict(f"{name}: {accepted} false acceptances", accepted == 0)
         report.verdict(f"{name}: slowest answer {slowest:.0f} ms", slowest < FIRST_POSE_MS)
         refused_ms = np.concatenate([one.ms for one in elsewhere])
         refusals = f"{np.median(refused_ms):.0f} / {refused_ms.max():.0f}"
     return [name, f"{found} of {len(trials.ms)}", verdict, str(wrong),
             f"{100 * trials.rmse_m():.2f}", f"{np.median(trials.ms):.0f} / {slowest:.0f}",
-            f"{accepted} of {asked}" if asked else "-", refusals]
+            f"{accepted} of {asked}" if asked else "-", part, refusals]
 
 
 def changed_row(arguments: argparse.Namespace, name: str, report: Report) -> list[str]:
@@ -132,7 +136,7 @@ def make_report(arguments: argparse.Namespace) -> Report:
                   "RMSE at 1 m [cm]", "median [ms]"], rows)
     report.text("### Without a guess")
     report.table(["map", "found", "all", "wrong", "RMSE [cm]", "median / slowest [ms]",
-                  "accepted from elsewhere", "refused in: median / slowest [ms]"],
+                  "accepted from elsewhere", "wrong in the map of a part", "refused in: median / slowest [ms]"],
                  [anywhere_row(arguments, name, report)
                   for name in arguments.world + arguments.real])
     if arguments.world:

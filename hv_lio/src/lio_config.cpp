@@ -7,8 +7,7 @@ namespace hv::lio {
 Pose ExtrinsicConfig::T_imu_lidar() const {
   const Eigen::Quaterniond rotation(rotation_xyzw[3], rotation_xyzw[0], rotation_xyzw[1],
                                     rotation_xyzw[2]);
-  return MakePose(rotation,
-                  Eigen::Vector3d(translation_m[0], translation_m[1], translation_m[2]));
+  return MakePose(rotation, Eigen::Vector3d(translation_m[0], translation_m[1], translation_m[2]));
 }
 
 void ExtrinsicConfig::Describe(ConfigVisitor& visitor) {
@@ -38,6 +37,12 @@ void RobustnessConfig::Describe(ConfigVisitor& visitor) {
                 "speed that means divergence and causes a reset [m/s]");
   visitor.Field("max_imu_only_scans", max_imu_only_scans,
                 "consecutive scans without a correction that cause a reset");
+  visitor.Field("misfit_share", misfit_share,
+                "a scan does not belong to the map when fewer of its points than this share of the "
+                "usual number find a surface, 0 to 1, ...");
+  visitor.Field("misfit_ratio", misfit_ratio,
+                "... and these lie farther from it than so many times the usual distance");
+  visitor.Field("misfit_scans", misfit_scans, "consecutive ones that cause a reset");
 }
 
 void RobustnessConfig::Validate(ConfigProblems& problems) const {
@@ -48,8 +53,11 @@ void RobustnessConfig::Validate(ConfigProblems& problems) const {
                    "robustness.on_clock_jump", "must be 'continue' or 'reset'");
   problems.Require(max_waiting_scans >= 2, "robustness.max_waiting_scans", "must be at least 2");
   problems.Require(max_speed_mps > 0.0, "robustness.max_speed_mps", "must be positive");
-  problems.Require(max_imu_only_scans >= 1, "robustness.max_imu_only_scans",
-                   "must be at least 1");
+  problems.Require(max_imu_only_scans >= 1, "robustness.max_imu_only_scans", "must be at least 1");
+  problems.Require(misfit_share >= 0.0 && misfit_share < 1.0, "robustness.misfit_share",
+                   "must be at least 0 and less than 1");
+  problems.Require(misfit_ratio >= 1.0, "robustness.misfit_ratio", "must be at least 1");
+  problems.Require(misfit_scans >= 1, "robustness.misfit_scans", "must be at least 1");
 }
 
 void LioConfig::Describe(ConfigVisitor& visitor) {

@@ -31,7 +31,8 @@ Pipeline::Pipeline(const LioConfig& config)
       odometry_(config_),
       initializer_(config_.initialization),
       constant_velocity_(config_.constant_velocity),
-      imu_(config_.imu, config_.robustness.imu_gap_s) {}
+      imu_(config_.imu, config_.robustness.imu_gap_s),
+      match_(config_.robustness) {}
 
 const VoxelMap& Pipeline::map() const { return odometry_.map(); }
 
@@ -226,6 +227,9 @@ void Pipeline::Supervise(ScanResult& result) {
   } else if (imu_only_streak_ >= config_.robustness.max_imu_only_scans) {
     result.reason =
         Line("no match with the map for %.0f scans%s", imu_only_streak_, ", started anew");
+  } else if (result.status == ScanStatus::kTracking && match_.IsLost(result.update)) {
+    result.reason = Line("the last %.0f scans do not belong to the map%s",
+                         config_.robustness.misfit_scans, ", started anew");
   } else {
     return;
   }
@@ -240,6 +244,7 @@ void Pipeline::Reset(bool keep_pose) {
   ForgetStart();
   constant_velocity_.Clear();
   imu_only_streak_ = 0;
+  match_.Restart();
 }
 
 }  // namespace hv::lio

@@ -136,13 +136,13 @@ void GlobalLocalizer::Measure(const Scan& scan, LocalizationResult& result) cons
 }
 
 /// Empty when the place counts as found.
-std::string GlobalLocalizer::WhyNot(const LocalizationResult& result) const {
+std::string GlobalLocalizer::WhyNot(const LocalizationResult& result, double min_fit) const {
   const AcceptanceConfig& accept = config_.accept;
   if (result.score.overlap < accept.min_overlap) {
     return "the map knows only " + Percent(result.score.overlap) +
            " of what the scan sees at the best place";
   }
-  if (result.score.fit < accept.min_fit) {
+  if (result.score.fit < min_fit) {
     return "only " + Percent(result.score.fit) + " of the scan fits at the best place";
   }
   if (result.score.seen_through > accept.max_seen_through) {
@@ -170,7 +170,8 @@ LocalizationResult GlobalLocalizer::Locate(const LocalizationQuery& query) const
     return result;
   }
   Measure(scan, result);
-  result.reason = WhyNot(result);
+  const AcceptanceConfig& accept = config_.accept;
+  result.reason = WhyNot(result, query.guess ? accept.min_fit : accept.min_fit_anywhere);
   result.localized = result.reason.empty();
   return result;
 }

@@ -3,7 +3,12 @@
 namespace hv::relocalize {
 
 void AcceptanceConfig::Describe(ConfigVisitor& visitor) {
-  visitor.Field("min_fit", min_fit, "share of the scan's surfaces that must fit, 0 to 1");
+  visitor.Field("min_fit", min_fit,
+                "share of the scan's surfaces that must fit near a guess, 0 to 1");
+  visitor.Field(
+      "min_fit_anywhere", min_fit_anywhere,
+      "the same without a guess: the other end of a symmetric hall, of which the map knows "
+      "only a part, fits by some 80 %");
   visitor.Field("min_overlap", min_overlap,
                 "share of them that must lie where the map knows anything, 0 to 1");
   visitor.Field("max_seen_through", max_seen_through,
@@ -18,6 +23,7 @@ void AcceptanceConfig::Validate(ConfigProblems& problems) const {
                      "must lie between 0 and 1");
   };
   share(min_fit, "min_fit");
+  share(min_fit_anywhere, "min_fit_anywhere");
   share(min_overlap, "min_overlap");
   share(max_seen_through, "max_seen_through");
   problems.Require(min_lead >= 0.0, "accept.min_lead", "must not be negative");

@@ -32,6 +32,9 @@ struct RobustnessConfig {
   int max_waiting_scans = 20;
   double max_speed_mps = 60.0;
   int max_imu_only_scans = 50;
+  double misfit_share = 0.5;
+  double misfit_ratio = 4.0;
+  int misfit_scans = 10;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

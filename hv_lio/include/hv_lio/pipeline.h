@@ -12,6 +12,7 @@
 #include "hv_lio/imu_buffer.h"
 #include "hv_lio/initializer.h"
 #include "hv_lio/lio_config.h"
+#include "hv_lio/match_monitor.h"
 #include "hv_lio/moving_start.h"
 #include "hv_lio/odometry.h"
 #include "hv_lio/odometry_result.h"
@@ -96,6 +97,7 @@ class Pipeline {
   ImuBuffer imu_;
   std::deque<WaitingScan> scans_;
   int imu_only_streak_ = 0;
+  MatchMonitor match_;
   PipelineCounters counters_;
   std::vector<std::string> events_;
 };

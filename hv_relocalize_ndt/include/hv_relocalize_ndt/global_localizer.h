@@ -69,7 +69,7 @@ class GlobalLocalizer {
   std::vector<LocalizationCandidate> ProposeByDescriptors(const Scan& scan) const;
   void FollowUp(const Scan& scan, std::vector<LocalizationCandidate>& candidates) const;
   void Measure(const Scan& scan, LocalizationResult& result) const;
-  std::string WhyNot(const LocalizationResult& result) const;
+  std::string WhyNot(const LocalizationResult& result, double min_fit) const;
 
   RelocalizeConfig config_;
   const PriorMap& map_;

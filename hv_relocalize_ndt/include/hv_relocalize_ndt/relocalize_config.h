@@ -10,6 +10,7 @@ namespace hv::relocalize {
 /// When a place counts as found.
 struct AcceptanceConfig {
   double min_fit = 0.75;
+  double min_fit_anywhere = 0.85;
   double min_overlap = 0.7;
   double max_seen_through = 0.1;
   double min_lead = 2.5;
