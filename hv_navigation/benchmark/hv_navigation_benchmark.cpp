@@ -59,7 +59,7 @@ PlanarPose RandomPose(const ClearanceGrid& grid, std::mt19937& random) {
 }
 
 /// Argument: cells of an edge, at 0.05 m.
-void GlobalPlan(benchmark::State& state) {
+void PlanGlobally(benchmark::State& state) {
   const ClearanceGrid grid(Office(static_cast<int>(state.range(0)), 0.05),
                            ClearanceGrid::Unknown::kOccupied, 1.5);
   const GlobalPlanner planner({}, Footprint());
@@ -81,10 +81,10 @@ void GlobalPlan(benchmark::State& state) {
   state.counters["length_m"] = length_m / found;
   state.counters["detour"] = detour / found;
 }
-BENCHMARK(GlobalPlan)->Arg(800)->Arg(2000)->Unit(benchmark::kMillisecond)->Iterations(60);
+BENCHMARK(PlanGlobally)->Arg(800)->Arg(2000)->Unit(benchmark::kMillisecond)->Iterations(60);
 
 /// A cycle in a window of 10 x 10 m of that office.
-void LocalCycle(benchmark::State& state) {
+void FollowLocally(benchmark::State& state) {
   const ClearanceGrid grid(Office(800, 0.05), ClearanceGrid::Unknown::kOccupied, 1.5);
   const GlobalPlanner planner({}, Footprint());
   std::mt19937 random(1);
@@ -106,7 +106,7 @@ void LocalCycle(benchmark::State& state) {
     benchmark::DoNotOptimize(local.Plan(grid, plan.path[at], {0.5, 0.0}));
   }
 }
-BENCHMARK(LocalCycle)->Unit(benchmark::kMillisecond);
+BENCHMARK(FollowLocally)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace hv::navigation

@@ -65,7 +65,10 @@ class Planning {
     }
     if (space_.IsFree(request_.start)) return true;
     const double around_m = footprint_.CircumscribedRadius() + kLookAhead_m / 2.0;
-    space_.AllowNear(request_.start.position, around_m, -config_.start_slack_m);
+    for (const double margin_m : {footprint_.margin_m, -config_.start_slack_m}) {
+      space_.AllowNear(request_.start.position, around_m, margin_m);
+      if (space_.IsFree(request_.start)) break;
+    }
     return space_.IsFree(request_.start) ||
            Fail(PlanOutcome::kStartBlocked, "the robot stands in an obstacle");
   }

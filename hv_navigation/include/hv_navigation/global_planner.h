@@ -23,7 +23,7 @@ struct GlobalPlannerConfig {
   double start_slack_m = 0.1;
   double corner_radius_m = 0.6;
   double path_step_m = 0.1;
-  int lattice_expansions = 100000;
+  int lattice_expansions = 50000;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
