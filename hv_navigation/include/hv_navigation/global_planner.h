@@ -11,7 +11,7 @@ namespace hv::navigation {
 
 /// How paths through the map are sought.
 struct GlobalPlannerConfig {
-  int samples = 300;
+  int samples = 100;
   int seed = 1;
   double range_m = 2.0;
   double tube_m = 0.5;
