@@ -4,6 +4,49 @@
 #include <cmath>
 
 namespace hv::navigation {
+namespace {
+
+/// An axis-aligned part of the footprint, in the frame of the base.
+struct Part {
+  Eigen::Vector2d center;
+  Eigen::Vector2d half;
+};
+
+/// Decides by the distance at the centre, else looks at both halves.
+class PartChecker {
+ public:
+  PartChecker(const ClearanceGrid& grid, const PlanarPose& pose)
+      : grid_(grid),
+        origin_(pose.position),
+        x_(pose.Ahead()),
+        y_(-x_.y(), x_.x()),
+        cell_m_(grid.grid().resolution_m) {}
+
+  bool Touches(const Part& part) const {
+    const Eigen::Vector2d at = origin_ + part.center.x() * x_ + part.center.y() * y_;
+    const double clearance_m = grid_.ClearanceAt(at);
+    if (clearance_m <= 0.0) return true;
+    // The distance is that of the centre of a cell, from a border taken to be half a cell away.
+    if (clearance_m - cell_m_ > part.half.norm()) return false;
+    if (part.half.maxCoeff() <= 0.25 * cell_m_) return false;
+    const int axis = part.half.x() >= part.half.y() ? 0 : 1;
+    Part low = part;
+    low.half[axis] *= 0.5;
+    Part high = low;
+    low.center[axis] -= low.half[axis];
+    high.center[axis] += high.half[axis];
+    return Touches(low) || Touches(high);
+  }
+
+ private:
+  const ClearanceGrid& grid_;
+  Eigen::Vector2d origin_;
+  Eigen::Vector2d x_;
+  Eigen::Vector2d y_;
+  double cell_m_;
+};
+
+}  // namespace
 
 void Footprint::Describe(ConfigVisitor& visitor) {
   visitor.Field("front_m", front_m, "from the origin of the base to the front [m]");
@@ -28,23 +71,14 @@ double Footprint::CircumscribedRadius() const {
 }
 
 bool Footprint::Collides(const ClearanceGrid& grid, const PlanarPose& pose) const {
-  // The distance is that of the centre of a cell, half a diagonal away at most.
   const double clearance_m = grid.ClearanceAt(pose.position);
-  const double rounding_m = M_SQRT1_2 * grid.grid().resolution_m;
+  const double rounding_m = grid.grid().resolution_m;
   if (clearance_m - rounding_m > CircumscribedRadius()) return false;
   if (clearance_m + rounding_m < InscribedRadius()) return true;
-  const double step_m = 0.5 * grid.grid().resolution_m;
-  const double width_m = half_width_m + margin_m;
-  const auto along = static_cast<int>(std::ceil((front_m + back_m + 2.0 * margin_m) / step_m));
-  const auto across = static_cast<int>(std::ceil(2.0 * width_m / step_m));
-  for (int i = 0; i <= along; ++i) {
-    const double x = -back_m - margin_m + (front_m + back_m + 2.0 * margin_m) * i / along;
-    for (int k = 0; k <= across; ++k) {
-      const double y = -width_m + 2.0 * width_m * k / across;
-      if (grid.OccupiedAt(pose * Eigen::Vector2d(x, y))) return true;
-    }
-  }
-  return false;
+  Part whole;
+  whole.center = {0.5 * (front_m - back_m), 0.0};
+  whole.half = {0.5 * (front_m + back_m) + margin_m, half_width_m + margin_m};
+  return PartChecker(grid, pose).Touches(whole);
 }
 
 }  // namespace hv::navigation

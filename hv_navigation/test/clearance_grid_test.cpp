@@ -49,6 +49,28 @@ TEST_P(Clearance, IsTheDistanceToTheNearestObstacle) {
   }
 }
 
+TEST_P(Clearance, OfAddedObstaclesIsThatOfAll) {
+  const OccupancyGrid cells = Random(60, 50, 0.005, 0.005, 6);
+  std::mt19937 random(8);
+  std::uniform_int_distribution<int> column(5, 40);
+  std::uniform_int_distribution<int> row(30, 49);
+  std::vector<Eigen::Vector2i> added;
+  OccupancyGrid all = cells;
+  for (int i = 0; i < 10; ++i) {
+    added.emplace_back(column(random), row(random));
+    all.At(added.back().x(), added.back().y()) = OccupancyGrid::kOccupied;
+  }
+  const ClearanceGrid truth(all, GetParam(), 0.8);
+  const ClearanceGrid grid = ClearanceGrid(cells, GetParam(), 0.8).WithObstacles(added);
+  for (int y = 0; y < cells.height; ++y) {
+    for (int x = 0; x < cells.width; ++x) {
+      const Eigen::Vector2i cell(x, y);
+      EXPECT_NEAR(grid.ClearanceAt(cell), truth.ClearanceAt(cell), 0.01);
+      EXPECT_EQ(grid.grid().At(x, y), all.At(x, y));
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Unknown, Clearance,
                          testing::Values(ClearanceGrid::Unknown::kFree,
                                          ClearanceGrid::Unknown::kOccupied));

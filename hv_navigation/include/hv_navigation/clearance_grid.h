@@ -15,25 +15,49 @@ class ClearanceGrid {
   /// `unknown`: what unknown cells count as. Distances are exact to 2 % and never above `limit_m`.
   ClearanceGrid(OccupancyGrid grid, Unknown unknown, double limit_m);
 
+  /// The same with `cells`, which must lie inside, occupied too.
+  ClearanceGrid WithObstacles(const std::vector<Eigen::Vector2i>& cells) const;
+
+  /// Whether a cell of a grid is known to be occupied.
+  static bool IsObstacle(std::int8_t cell) { return cell >= kOccupiedFrom; }
+
   const OccupancyGrid& grid() const { return grid_; }
 
   /// The cell that holds `position`, which may lie outside of the grid.
   Eigen::Vector2i CellOf(const Eigen::Vector2d& position) const;
   Eigen::Vector2d CenterOf(const Eigen::Vector2i& cell) const;
-  bool Contains(const Eigen::Vector2i& cell) const;
+  bool Contains(const Eigen::Vector2i& cell) const {
+    return cell.x() >= 0 && cell.y() >= 0 && cell.x() < grid_.width && cell.y() < grid_.height;
+  }
 
   /// From the centre of the cell of `position` to the nearest border of an obstacle [m]; 0 in
   /// obstacles, and outside of the grid when unknown places are obstacles.
   double ClearanceAt(const Eigen::Vector2d& position) const {
-    return ClearanceAt(CellOf(position));
+    const Eigen::Vector2d cell = (position - grid_.origin) * cells_per_m_;
+    const bool inside =
+        cell.x() >= 0.0 && cell.y() >= 0.0 && cell.x() < grid_.width && cell.y() < grid_.height;
+    return inside ? ClearanceInside(static_cast<int>(cell.x()), static_cast<int>(cell.y()))
+                  : outside_m_;
   }
-  double ClearanceAt(const Eigen::Vector2i& cell) const;
+  double ClearanceAt(const Eigen::Vector2i& cell) const {
+    return Contains(cell) ? ClearanceInside(cell.x(), cell.y()) : outside_m_;
+  }
 
   bool OccupiedAt(const Eigen::Vector2d& position) const { return ClearanceAt(position) <= 0.0; }
 
  private:
+  static constexpr int kOccupiedFrom = 50;  // percent, as in nav_msgs/OccupancyGrid
+
+  double ClearanceInside(int column, int row) const {
+    return static_cast<double>(
+        clearance_m_[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.width) +
+                     static_cast<std::size_t>(column)]);
+  }
+
   OccupancyGrid grid_;
+  double cells_per_m_;
   double outside_m_;
+  double limit_m_;
   std::vector<float> clearance_m_;
 };
 

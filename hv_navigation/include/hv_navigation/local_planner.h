@@ -1,0 +1,112 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hv_core/config.h"
+#include "hv_navigation/clearance_grid.h"
+#include "hv_navigation/footprint.h"
+#include "hv_navigation/motion_limits.h"
+#include "hv_navigation/path.h"
+
+namespace hv::navigation {
+
+/// How a path is followed.
+struct LocalPlannerConfig {
+  double period_s = 0.1;
+  double reaction_s = 0.1;
+  double horizon_s = 2.0;
+  double step_s = 0.1;
+  int speeds = 6;
+  int turns = 19;
+  double look_ahead_m = 0.8;
+  double turn_from = 0.8;
+  double turn_until = 0.2;
+  double goal_tolerance_m = 0.1;
+  double goal_yaw_tolerance = 0.1;
+  double approach_mps2 = 0.4;
+  double slow_mps = 0.3;
+  double slow_clearance_m = 0.3;
+  double margin_slack_m = 0.1;
+  double progress_weight = 1.0;
+  double path_weight = 1.5;
+  double heading_weight = 0.15;
+  double clearance_weight = 0.3;
+  double smoothness_weight = 0.05;
+  double collision_weight = 2.0;
+
+  void Describe(ConfigVisitor& visitor);
+  void Validate(ConfigProblems& problems) const;
+};
+
+enum class LocalState {
+  kNoPath,
+  kDriving,
+  kBlocked,  ///< nothing but to stand (or to brake) is safe and leads on
+  kReached,  ///< stands at the end of the path, within the tolerances
+};
+
+struct LocalPlan {
+  LocalState state = LocalState::kNoPath;
+  Velocity velocity;  ///< for the next period
+  Path trajectory;    ///< where that leads within the horizon
+  std::string reason;
+  double remaining_m = 0.0;  ///< of the path
+  double off_path_m = 0.0;   ///< distance of the robot from the path
+};
+
+class DynamicWindow;
+class PathTracker;
+
+/// Follows a path by the dynamic window approach (Fox, Burgard and Thrun 1997): simulates what the
+/// limits allow, keeps what can still stop before every obstacle, with the exact footprint, and
+/// takes what gets on best along the path. Turns on the spot where the path has sharp corners or
+/// begins behind. Not thread-safe.
+class LocalPlanner {
+ public:
+  LocalPlanner(const LocalPlannerConfig& config, const MotionLimits& limits,
+               const Footprint& footprint);
+  ~LocalPlanner();
+
+  /// Starts to follow `path`, given in the frame of the grids; an empty one ends following.
+  void SetPath(const Path& path);
+
+  /// Moves the path being followed into another frame, to which odometry has come.
+  void MovePath(const PlanarPose& T_new_old);
+
+  /// Whether the robot fits at all poses of the path within `distance_m` ahead, as far as `grid`
+  /// reaches; its frame may be another one than that of the path.
+  bool PathIsFree(const ClearanceGrid& grid, const PlanarPose& T_grid_path,
+                  double distance_m) const;
+
+  /// One cycle. `velocity` is the one driven now. Total: without a path, or where nothing is safe,
+  /// the velocity is to brake.
+  LocalPlan Plan(const ClearanceGrid& grid, const PlanarPose& pose, const Velocity& velocity);
+
+  /// Turns on the spot by `turn`, either way round, or backs off straight: the velocity for the
+  /// next period; nullopt when that is not safe.
+  std::optional<Velocity> Turn(const ClearanceGrid& grid, const PlanarPose& pose,
+                               const Velocity& velocity, double turn) const;
+  std::optional<Velocity> BackOff(const ClearanceGrid& grid, const PlanarPose& pose,
+                                  const Velocity& velocity) const;
+
+  /// Slows down as fast as allowed, along the circle driven now.
+  Velocity Brake(const Velocity& velocity) const;
+
+ private:
+  bool IsAtGoal(const PlanarPose& pose);
+  void Align(const DynamicWindow& window, const PlanarPose& pose, const Velocity& velocity,
+             LocalPlan& plan) const;
+  void Follow(const DynamicWindow& window, const PlanarPose& pose, const Velocity& velocity,
+              LocalPlan& plan);
+
+  LocalPlannerConfig config_;
+  MotionLimits limits_;
+  Footprint footprint_;
+  std::unique_ptr<PathTracker> tracker_;
+  bool turning_ = false;   ///< on the spot, towards the path
+  bool aligning_ = false;  ///< at the goal, towards its yaw
+};
+
+}  // namespace hv::navigation

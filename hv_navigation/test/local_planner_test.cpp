@@ -1,0 +1,213 @@
+#include "hv_navigation/local_planner.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "grids.h"
+#include "hv_navigation/global_planner.h"
+#include "kinematic_robot.h"
+
+namespace hv::navigation {
+namespace {
+
+ClearanceGrid Clearances(const OccupancyGrid& cells) {
+  return ClearanceGrid(cells, ClearanceGrid::Unknown::kOccupied, 2.0);
+}
+
+OccupancyGrid Hall() {
+  OccupancyGrid cells = EmptyCells(200, 100, 0.05);
+  FenceCells(cells);
+  return cells;
+}
+
+Path StraightPath(const PlanarPose& from, double length_m) {
+  Path path;
+  for (int i = 0; i <= static_cast<int>(10.0 * length_m); ++i) {
+    path.push_back(from * PlanarPose{{0.1 * i, 0.0}, 0.0});
+  }
+  return path;
+}
+
+/// A robot under the control of a local planner.
+struct Follower {
+  explicit Follower(const PlanarPose& start)
+      : planner({}, limits, footprint), robot(start, limits) {}
+
+  const LocalPlan& Step(const ClearanceGrid& grid) {
+    const Velocity before = robot.velocity();
+    plan = planner.Plan(grid, robot.pose(), before);
+    ExpectWithinLimits(before, plan.velocity);
+    robot.Drive(plan.velocity, config.period_s);
+    collided |= Bare(footprint).Collides(grid, robot.pose());
+    return plan;
+  }
+
+  /// Until the plan has `state`; the time it took [s].
+  double Until(LocalState state, const ClearanceGrid& grid, double longest_s) {
+    double time_s = 0.0;
+    do {
+      time_s += config.period_s;
+    } while (Step(grid).state != state && time_s < longest_s);
+    return time_s;
+  }
+
+  void ExpectWithinLimits(const Velocity& from, const Velocity& to) const {
+    constexpr double kRounding = 1e-9;
+    EXPECT_LE(std::abs(to.linear_mps), limits.max_linear_mps + kRounding);
+    EXPECT_LE(std::abs(to.angular_rps), limits.max_angular_rps + kRounding);
+    EXPECT_LE(to.linear_mps - from.linear_mps,
+              limits.linear_acceleration_mps2 * config.period_s + kRounding);
+    EXPECT_LE(from.linear_mps - to.linear_mps,
+              limits.linear_braking_mps2 * config.period_s + kRounding);
+    EXPECT_LE(std::abs(to.angular_rps - from.angular_rps),
+              limits.angular_acceleration_rps2 * config.period_s + kRounding);
+  }
+
+  LocalPlannerConfig config;
+  MotionLimits limits;
+  Footprint footprint;
+  LocalPlanner planner;
+  KinematicRobot robot;
+  LocalPlan plan;
+  bool collided = false;
+};
+
+class ClutteredRoom : public testing::TestWithParam<unsigned> {};
+
+TEST_P(ClutteredRoom, ReachesGoalsWithoutCollision) {
+  const ClearanceGrid grid = Clearances(RandomRoom(10.0, 18, 0.05, GetParam()));
+  const Footprint footprint;
+  const double open_m = footprint.CircumscribedRadius() + 0.06;
+  const auto pose = [&](unsigned seed) {
+    return PlanarPose{grid.CenterOf(OpenCell(grid, open_m, seed)), 0.7 * seed};
+  };
+  Follower run(pose(GetParam()));
+  int goals = 0;
+  for (unsigned i = 1; goals < 5 && i < 50; ++i) {
+    PlanRequest request;
+    request.start = run.robot.pose();
+    request.goal = pose(100 * GetParam() + i);
+    const GlobalPlan plan = GlobalPlanner({}, footprint).Plan(grid, request);
+    if (!plan.Found()) continue;
+    ++goals;
+    run.planner.SetPath(plan.path);
+    const double driven_m = run.robot.driven_m();
+    run.Until(LocalState::kReached, grid, 20.0 + 6.0 * plan.length_m);
+    ASSERT_EQ(run.plan.state, LocalState::kReached)
+        << "goal " << i << ", " << run.plan.reason << ", left " << run.plan.remaining_m << ", at "
+        << run.robot.pose().position.transpose() << " " << run.robot.pose().yaw;
+    EXPECT_LE((run.robot.pose().position - request.goal.position).norm(), 0.1);
+    EXPECT_LE(std::abs(WrappedAngle(run.robot.pose().yaw - request.goal.yaw)), 0.1);
+    EXPECT_LT(run.robot.driven_m() - driven_m, 1.15 * plan.length_m + 0.5);
+    ASSERT_FALSE(run.collided);
+  }
+  EXPECT_EQ(goals, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, ClutteredRoom, testing::Range(1U, 21U));
+
+TEST(LocalPlannerTest, IsFastWhereThereIsRoom) {
+  const ClearanceGrid grid = Clearances(Hall());
+  Follower run({{1.0, 2.5}, 0.0});
+  run.planner.SetPath(StraightPath(run.robot.pose(), 8.0));
+  const double time_s = run.Until(LocalState::kReached, grid, 60.0);
+  EXPECT_EQ(run.plan.state, LocalState::kReached);
+  EXPECT_LT(time_s, 13.0);
+}
+
+TEST(LocalPlannerTest, TurnsOnTheSpotWhenThePathBeginsBehind) {
+  const ClearanceGrid grid = Clearances(Hall());
+  Follower run({{5.0, 2.5}, M_PI});
+  run.planner.SetPath(StraightPath({{5.0, 2.5}, 0.0}, 3.0));
+  while (std::abs(WrappedAngle(run.robot.pose().yaw)) > 0.9) {
+    ASSERT_EQ(run.Step(grid).state, LocalState::kDriving);
+    ASSERT_LT((run.robot.pose().position - Eigen::Vector2d(5.0, 2.5)).norm(), 0.02);
+  }
+  run.Until(LocalState::kReached, grid, 20.0);
+  EXPECT_EQ(run.plan.state, LocalState::kReached);
+}
+
+/// A person fills the hall from wall to wall, so that there is no way round.
+OccupancyGrid HallWithPerson(double x) {
+  OccupancyGrid cells = Hall();
+  FillCells(cells, {x, 0.0}, {x + 0.4, 5.0});
+  return cells;
+}
+
+TEST(LocalPlannerTest, StopsBeforeWhatAppearsAndGoesOnAfterwards) {
+  const ClearanceGrid empty = Clearances(Hall());
+  for (double gap_m = 1.1; gap_m < 3.0; gap_m += 0.15) {
+    Follower run({{1.0, 2.5}, 0.0});
+    run.planner.SetPath(StraightPath(run.robot.pose(), 8.0));
+    while (run.robot.pose().position.x() < 3.0) run.Step(empty);
+    ASSERT_GT(run.robot.velocity().linear_mps, 0.9);
+    const ClearanceGrid blocked = Clearances(HallWithPerson(3.0 + gap_m));
+    run.Until(LocalState::kBlocked, blocked, 10.0);
+    EXPECT_EQ(run.plan.state, LocalState::kBlocked);
+    for (int i = 0; i < 30; ++i) run.Step(blocked);
+    EXPECT_EQ(run.plan.state, LocalState::kBlocked);
+    EXPECT_FALSE(run.plan.reason.empty());
+    EXPECT_NEAR(run.robot.velocity().linear_mps, 0.0, 1e-6);
+    EXPECT_FALSE(run.collided) << gap_m;
+    run.Until(LocalState::kReached, empty, 30.0);
+    EXPECT_EQ(run.plan.state, LocalState::kReached);
+  }
+}
+
+TEST(LocalPlannerTest, LetsAPersonCross) {
+  // At 1 m/s, into the way of the robot when it is 1 to 1.6 m away.
+  for (const double begin_s : {0.0, 0.25, 0.5}) {
+    Follower run({{1.0, 2.5}, 0.0});
+    run.planner.SetPath(StraightPath(run.robot.pose(), 8.0));
+    double slowest_mps = 1.0;
+    double time_s = 0.0;
+    for (; time_s < 40.0 && run.plan.state != LocalState::kReached; time_s += 0.1) {
+      OccupancyGrid cells = Hall();
+      const double y = std::min(4.5, 0.2 + std::max(0.0, time_s - begin_s));
+      FillCells(cells, {4.0, y - 0.2}, {4.4, y + 0.2});
+      run.Step(Clearances(cells));
+      const bool near = run.robot.pose().position.x() > 2.5 && run.robot.pose().position.x() < 4.0;
+      if (near) slowest_mps = std::min(slowest_mps, run.robot.velocity().linear_mps);
+    }
+    EXPECT_EQ(run.plan.state, LocalState::kReached);
+    EXPECT_FALSE(run.collided) << begin_s;
+    EXPECT_LT(slowest_mps, 0.9);
+    EXPECT_LT(time_s, 20.0);
+  }
+}
+
+TEST(LocalPlannerTest, PassesANarrowDoor) {
+  OccupancyGrid cells = Hall();
+  FillCells(cells, {4.9, 0.0}, {5.1, 2.1});
+  FillCells(cells, {4.9, 2.9}, {5.1, 5.0});
+  const ClearanceGrid grid = Clearances(cells);
+  PlanRequest request;
+  request.start = {{2.0, 1.0}, 2.0};
+  request.goal = {{8.0, 1.0}, 0.0};
+  const GlobalPlan plan = GlobalPlanner({}, Footprint()).Plan(grid, request);
+  ASSERT_TRUE(plan.Found());
+  Follower run(request.start);
+  run.planner.SetPath(plan.path);
+  run.Until(LocalState::kReached, grid, 60.0);
+  EXPECT_EQ(run.plan.state, LocalState::kReached) << run.plan.reason;
+  EXPECT_FALSE(run.collided);
+}
+
+TEST(LocalPlannerTest, StandsWithoutAPathAndInObstacles) {
+  const ClearanceGrid grid = Clearances(HallWithPerson(2.0));
+  LocalPlanner planner({}, {}, Footprint());
+  const Velocity moving{0.5, 0.2};
+  LocalPlan plan = planner.Plan(grid, {{5.0, 2.5}, 0.0}, moving);
+  EXPECT_EQ(plan.state, LocalState::kNoPath);
+  EXPECT_LT(plan.velocity.linear_mps, 0.5);
+  EXPECT_NEAR(plan.velocity.angular_rps / plan.velocity.linear_mps, 0.4, 1e-9);
+  planner.SetPath(StraightPath({{2.2, 2.5}, 0.0}, 5.0));
+  plan = planner.Plan(grid, {{2.2, 2.5}, 0.0}, {});
+  EXPECT_EQ(plan.state, LocalState::kBlocked);
+  EXPECT_EQ(plan.velocity.linear_mps, 0.0);
+  EXPECT_FALSE(plan.reason.empty());
+}
+
+}  // namespace
+}  // namespace hv::navigation
