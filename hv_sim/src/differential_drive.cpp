@@ -69,7 +69,10 @@ bool DifferentialDrive::Command(const DriveCommand& command) {
   return true;
 }
 
-void DifferentialDrive::Halt() { wheels_ = state_.velocity = {}; }
+void DifferentialDrive::HaltAt(const DriveState& before) {
+  state_ = {before.position, before.yaw, {}};
+  wheels_ = {};
+}
 
 /// Of the wheels after `dt`, less what they lose to slip.
 DriveCommand DifferentialDrive::GroundVelocity(double dt) {

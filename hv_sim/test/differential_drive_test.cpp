@@ -100,14 +100,15 @@ TEST(DifferentialDriveTest, CommandsThatAreNotFiniteAreRefused) {
   EXPECT_EQ(drive.state().yaw, 0.0);
 }
 
-TEST(DifferentialDriveTest, HaltStopsAtOnce) {
+TEST(DifferentialDriveTest, HaltStopsAtOnceWhereItStood) {
   DifferentialDrive drive(WithoutSlip(), 1);
   drive.Command({1.0, 0.5});
   Drive(drive, 2.0);
-  const Vector2d place = drive.state().position;
-  drive.Halt();
+  const DriveState before = drive.state();
+  drive.Step(0.01);
+  drive.HaltAt(before);
   EXPECT_EQ(drive.state().velocity.linear_mps, 0.0);
-  EXPECT_EQ(drive.state().position, place);
+  EXPECT_EQ(drive.state().position, before.position);
   drive.Step(0.01);
   EXPECT_NEAR(drive.state().velocity.linear_mps, 0.008, 1e-12);
 }

@@ -51,8 +51,8 @@ class DifferentialDrive {
   /// as none and is refused with false.
   bool Command(const DriveCommand& command);
 
-  /// Stands at once where it is; the command stays.
-  void Halt();
+  /// Stands at once, where it stood at `before`; the command stays.
+  void HaltAt(const DriveState& before);
 
   /// Moves on by `dt` [s] with constant accelerations of the ground velocities, integrated exactly
   /// to machine precision for turns of up to a radian.
