@@ -96,8 +96,8 @@ TEST(RobotBodyTest, NoiseFreeImuIntegratesBackToTheTruth) {
   }
   EXPECT_GT(way, 15.0);
   EXPECT_TRUE(robot.contacts.empty());
-  EXPECT_LT(worst, 0.02);
-  EXPECT_LT(RotationDistance(strapdown.pose(), imu_state().T_world_body), 1e-4);
+  EXPECT_LT(worst, 0.002);
+  EXPECT_LT(RotationDistance(strapdown.pose(), imu_state().T_world_body), 1e-5);
 }
 
 TEST(RobotBodyTest, DerivativesAreThoseOfThePose) {
