@@ -82,6 +82,12 @@ void DepthCameraConfig::Validate(ConfigProblems& problems) const {
 double DepthCameraConfig::fx() const { return FocalLength(width, horizontal_fov_deg); }
 double DepthCameraConfig::fy() const { return FocalLength(height, vertical_fov_deg); }
 
+Pose DepthCameraConfig::mounting() const {
+  const std::vector<double>& v = T_base_camera;
+  return MakePose(Eigen::Quaterniond(v[6], v[3], v[4], v[5]).normalized(),
+                  Vector3d(v[0], v[1], v[2]));
+}
+
 Pose OpticalInCamera() {
   Eigen::Matrix3d rotation;
   rotation << 0.0, 0.0, 1.0,  //

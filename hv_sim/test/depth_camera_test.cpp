@@ -177,9 +177,7 @@ TEST(DepthCameraTest, TheSeedDecidesWhateverTheNumberOfThreads) {
 TEST(DepthCameraTest, LowThingsAheadOfTheRobotAreInView) {
   // 0.15 m high, from 0.5 to 3 m ahead of the front of the robot.
   const DepthCameraConfig config = Exact();
-  const std::vector<double>& t = config.T_base_camera;
-  const Pose T_base_camera =
-      MakePose(Eigen::Quaterniond(t[6], t[3], t[4], t[5]).normalized(), Vector3d(t[0], t[1], t[2]));
+  const Pose T_base_camera = config.mounting();
   const double pitch_deg = std::asin(-T_base_camera.linear()(2, 0)) * 180.0 / M_PI;
   EXPECT_NEAR(pitch_deg, 17.5, 0.01);
   for (const double ahead : {0.5, 1.0, 2.0, 3.0}) {

@@ -34,6 +34,7 @@ struct DepthCameraConfig {
   double fy() const;                               ///< focal length [px]
   double cx() const { return 0.5 * (width - 1); }  ///< principal point [px]
   double cy() const { return 0.5 * (height - 1); }
+  Pose mounting() const;  ///< T_base_camera as a transform
 };
 
 /// Depth along the optical axis of each pixel, row by row from the top left [mm]; 0: unknown.
