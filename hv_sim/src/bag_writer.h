@@ -34,8 +34,7 @@ class BagWriter : public DatasetWriter {
 
   std::string path_;
   BagLayout layout_;
-  double gyro_variance_ = 0.0;
-  double accel_variance_ = 0.0;
+  ImuConfig imu_config_;
   rosbag::Bag bag_;
   std::uint32_t scan_sequence_ = 0;
   std::uint32_t imu_sequence_ = 0;

@@ -12,7 +12,6 @@
 #include "hv_core/so3.h"
 #include "hv_sim/pedestrian.h"
 #include "hv_sim/random.h"
-#include "hv_sim/ray_caster.h"
 
 namespace hv::sim {
 namespace {
@@ -120,10 +119,10 @@ void CheckModel(const LidarModel& model) {
 }  // namespace
 
 struct LidarSimulator::Impl {
-  Impl(const World& world, LidarModel lidar_model, LidarOptions lidar_options, std::uint32_t key)
-      : caster(world.mesh), model(std::move(lidar_model)), options(lidar_options), seed(key) {
+  Impl(std::shared_ptr<const RayCaster> scene, LidarModel lidar_model, LidarOptions lidar_options,
+       std::uint32_t key)
+      : caster(std::move(scene)), model(std::move(lidar_model)), options(lidar_options), seed(key) {
     CheckModel(model);
-    if (options.people) people = world.people;
   }
 
   std::size_t rays_per_beam() const { return options.noise ? kSubRays : 1; }
@@ -139,7 +138,7 @@ struct LidarSimulator::Impl {
   std::vector<Point> Column(int column, double start_s,
                             const std::function<Pose(double)>& T_world_lidar) const;
 
-  RayCaster caster;
+  std::shared_ptr<const RayCaster> caster;
   LidarModel model;
   LidarOptions options;
   std::uint32_t seed;
@@ -199,7 +198,7 @@ std::vector<Point> LidarSimulator::Impl::Column(
   for (std::size_t channel = 0; channel < channels; ++channel) {
     AppendBeam(column, channel, pose, rays);
   }
-  caster.Cast(rays, static_cast<float>(model.max_range + 1.0), hits);
+  caster->Cast(rays, static_cast<float>(model.max_range + 1.0), hits);
   for (const Pedestrian& person : NearbyPeople(start_s + offset_s, pose.Origin(0.0))) {
     for (std::size_t i = 0; i < rays.size(); ++i) Intersect(person, rays[i], hits[i]);
   }
@@ -223,9 +222,21 @@ std::vector<Point> LidarSimulator::Impl::Column(
 
 LidarSimulator::LidarSimulator(const World& world, LidarModel model, LidarOptions options,
                                std::uint32_t seed)
-    : impl_(std::make_unique<Impl>(world, std::move(model), options, seed)) {}
+    : LidarSimulator(std::make_shared<RayCaster>(world.mesh), world.people, std::move(model),
+                     options, seed) {}
+
+LidarSimulator::LidarSimulator(std::shared_ptr<const RayCaster> scene,
+                               std::vector<PersonPath> people, LidarModel model,
+                               LidarOptions options, std::uint32_t seed)
+    : impl_(std::make_unique<Impl>(std::move(scene), std::move(model), options, seed)) {
+  if (options.people) impl_->people = std::move(people);
+}
 
 LidarSimulator::~LidarSimulator() = default;
+
+void LidarSimulator::SetScene(std::shared_ptr<const RayCaster> scene) {
+  impl_->caster = std::move(scene);
+}
 
 Scan LidarSimulator::Sweep(double start_s, const std::function<Pose(double)>& T_world_lidar) const {
   const int columns = impl_->model.columns;
@@ -247,7 +258,7 @@ Scan LidarSimulator::Sweep(double start_s, const std::function<Pose(double)>& T_
 }
 
 double LidarSimulator::DistanceToSurface(const Vector3d& point, double limit) const {
-  return impl_->caster.Distance(point, limit);
+  return impl_->caster->Distance(point, limit);
 }
 
 const LidarModel& LidarSimulator::model() const { return impl_->model; }

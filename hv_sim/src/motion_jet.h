@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "hv_sim/motion.h"
+
 namespace hv::sim {
 
 /// A function of time at one instant with its first two derivatives; arithmetic applies the rules
@@ -36,5 +38,11 @@ inline Jet Cos(const Jet& a) {
   const double cosine = std::cos(a.value);
   return {cosine, -sine * a.first, -sine * a.second - cosine * a.first * a.first};
 }
+
+/// Attitude Rz(yaw) Ry(pitch) Rx(roll) with its angular velocity and acceleration.
+void SetRotation(const Jet& roll, const Jet& pitch, const Jet& yaw, MotionState& state);
+
+/// Position with velocity and acceleration.
+void SetTranslation(const Jet& x, const Jet& y, const Jet& z, MotionState& state);
 
 }  // namespace hv::sim

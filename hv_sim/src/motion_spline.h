@@ -11,6 +11,17 @@ namespace hv::sim {
 enum Channel { kX, kY, kZ, kYaw, kPitch, kActivity, kChannels };
 using Controls = Eigen::Matrix<double, kChannels, 1>;
 
+/// How the six controls around an instant shape a uniform quintic B-spline and its derivatives.
+struct QuinticWeights {
+  using Weights = Eigen::Matrix<double, 6, 1>;
+  Weights value;
+  Weights first;   ///< [1/s]
+  Weights second;  ///< [1/s^2]
+
+  /// `share` in [0, 1) of the way from the third control to the fourth, which are `step_s` apart.
+  QuinticWeights(double share, double step_s);
+};
+
 /// Uniform quintic B-spline over time: four times continuously differentiable, and constant
 /// wherever six neighbouring controls agree. Immutable.
 class MotionSpline {

@@ -82,6 +82,34 @@ bool VisitTriangle(RTCPointQueryFunctionArguments* arguments) {
   return true;
 }
 
+struct VisitQuery {
+  const Mesh* mesh;
+  const std::function<void(const RayCaster::Triangle&)>* visit;
+};
+
+bool PassTriangle(RTCPointQueryFunctionArguments* arguments) {
+  const auto* query = static_cast<const VisitQuery*>(arguments->userPtr);
+  const auto& corners = query->mesh->triangles[arguments->primID];
+  const auto corner = [&](std::size_t i) { return query->mesh->vertices[corners[i]]; };
+  (*query->visit)({corner(0), corner(1), corner(2)});
+  return false;
+}
+
+/// Calls `function` for the triangles whose bounds are within `radius` of `point`; it may shrink
+/// the radius, which is returned.
+double RunPointQuery(RTCScene scene, const Eigen::Vector3f& point, double radius,
+                     RTCPointQueryFunction function, void* user) {
+  RTCPointQuery query{};
+  query.x = point.x();
+  query.y = point.y();
+  query.z = point.z();
+  query.radius = static_cast<float>(radius);
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene, &query, &context, function, user);
+  return static_cast<double>(query.radius);
+}
+
 }  // namespace
 
 struct RayCaster::Scene {
@@ -155,15 +183,13 @@ void RayCaster::Cast(const std::vector<Ray>& rays, float max_range, std::vector<
 
 double RayCaster::Distance(const Eigen::Vector3d& point, double limit) const {
   NearestQuery nearest{&scene_->mesh, point.cast<float>()};
-  RTCPointQuery query{};
-  query.x = nearest.point.x();
-  query.y = nearest.point.y();
-  query.z = nearest.point.z();
-  query.radius = static_cast<float>(limit);
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(scene_->scene, &query, &context, VisitTriangle, &nearest);
-  return static_cast<double>(query.radius);
+  return RunPointQuery(scene_->scene, nearest.point, limit, VisitTriangle, &nearest);
+}
+
+void RayCaster::VisitNear(const Eigen::Vector3d& point, double radius,
+                          const std::function<void(const Triangle&)>& visit) const {
+  VisitQuery query{&scene_->mesh, &visit};
+  RunPointQuery(scene_->scene, point.cast<float>(), radius, PassTriangle, &query);
 }
 
 }  // namespace hv::sim

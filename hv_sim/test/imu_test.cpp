@@ -5,13 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include "hv_core/so3.h"
 #include "hv_sim/sensor_suite.h"
+#include "strapdown.h"
 
 namespace hv::sim {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 World Loop() {
@@ -20,52 +19,6 @@ World Loop() {
   world.route = {{0, 0, 0}, {9, 0, 0}, {9, 7, 0}, {5, 12, 0.5}, {-3, 9, 0}, {-3, 3, 0}};
   return world;
 }
-
-/// Integrates specific force and angular velocity from `start`, in the manner of a strapdown
-/// navigator with fourth-order steps over two samples: classical Runge-Kutta for the attitude,
-/// Simpson's rule for velocity and position.
-class Strapdown {
- public:
-  explicit Strapdown(const MotionState& start)
-      : R_(start.T_world_body.linear()),
-        v_(start.velocity),
-        p_(start.T_world_body.translation()) {}
-
-  void Step(const ImuSample& a, const ImuSample& b, const ImuSample& c, double period) {
-    const double h = 2.0 * period;
-    const Matrix3d R_half = R_ * so3::Exp(HalfTurn(a, b, c, period));
-    const Matrix3d R_end = R_ * so3::Exp(FullTurn(a, b, c, h));
-    const Vector3d gravity(0.0, 0.0, -kGravity);
-    const Vector3d f0 = R_ * a.acceleration + gravity;
-    const Vector3d f1 = R_half * b.acceleration + gravity;
-    const Vector3d f2 = R_end * c.acceleration + gravity;
-    p_ += h * v_ + h * h / 6.0 * (f0 + 2.0 * f1);
-    v_ += h / 6.0 * (f0 + 4.0 * f1 + f2);
-    R_ = R_end;
-  }
-
-  Pose pose() const { return MakePose(R_, p_); }
-
- private:
-  /// Rotation vector over both intervals: Simpson's rule with the coning correction.
-  static Vector3d FullTurn(const ImuSample& a, const ImuSample& b, const ImuSample& c, double h) {
-    const Vector3d first = h / 24.0 * (5.0 * a.angular_velocity + 8.0 * b.angular_velocity -
-                                       c.angular_velocity);
-    const Vector3d second = h / 24.0 * (-a.angular_velocity + 8.0 * b.angular_velocity +
-                                        5.0 * c.angular_velocity);
-    return first + second + 2.0 / 3.0 * first.cross(second);
-  }
-
-  static Vector3d HalfTurn(const ImuSample& a, const ImuSample& b, const ImuSample& c,
-                           double period) {
-    return period / 12.0 *
-           (5.0 * a.angular_velocity + 8.0 * b.angular_velocity - c.angular_velocity);
-  }
-
-  Matrix3d R_;
-  Vector3d v_;
-  Vector3d p_;
-};
 
 class ImuStyleTest : public testing::TestWithParam<std::string> {};
 

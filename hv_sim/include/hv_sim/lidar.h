@@ -8,6 +8,7 @@
 
 #include "hv_core/scan.h"
 #include "hv_core/se3.h"
+#include "hv_sim/ray_caster.h"
 #include "hv_sim/world.h"
 
 namespace hv::sim {
@@ -53,7 +54,13 @@ struct LidarOptions {
 class LidarSimulator {
  public:
   LidarSimulator(const World& world, LidarModel model, LidarOptions options, std::uint32_t seed);
+  /// The same with triangles that others use too.
+  LidarSimulator(std::shared_ptr<const RayCaster> scene, std::vector<PersonPath> people,
+                 LidarModel model, LidarOptions options, std::uint32_t seed);
   ~LidarSimulator();
+
+  /// Other static surroundings from now on. Not while a const method runs.
+  void SetScene(std::shared_ptr<const RayCaster> scene);
 
   /// One revolution whose first firing is at `start_s` [s]; points in firing order, times from
   /// `start_s`. `T_world_lidar(t)` is the LiDAR pose at time t [s]; it is called from several

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -35,6 +37,12 @@ class RayCaster {
 
   /// Distance from `point` to the nearest triangle, at most `limit` [m].
   double Distance(const Eigen::Vector3d& point, double limit) const;
+
+  using Triangle = std::array<Eigen::Vector3f, 3>;
+  /// Shows `visit` every triangle within `radius` [m] of `point`, and perhaps some a little further
+  /// away, in no particular order.
+  void VisitNear(const Eigen::Vector3d& point, double radius,
+                 const std::function<void(const Triangle&)>& visit) const;
 
  private:
   struct Scene;
