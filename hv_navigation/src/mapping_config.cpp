@@ -101,9 +101,9 @@ void ObstacleGridConfig::Validate(ConfigProblems& problems) const {
 
 void GlobalGridConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("clear_range_m", clear_range_m,
-                "free space takes obstacles away where it is seen from nearer [m]");
-  visitor.Field("clear_views", clear_views, "views after which an obstacle is taken away");
-  visitor.Field("mark_views", mark_views, "views after which an obstacle is added");
+                "the saved map is corrected where free space is seen from nearer [m]");
+  visitor.Field("clear_views", clear_views, "views in a row after which an obstacle is taken away");
+  visitor.Field("mark_views", mark_views, "views in a row after which an obstacle is added");
   visitor.Field("movable_m", movable_m, "obstacles of a saved map that are larger stay [m]");
   visitor.Field("resolution_m", resolution_m, "edge of a cell without a saved map [m]");
   visitor.Field("max_side_m", max_side_m, "longest side of the grid [m]");

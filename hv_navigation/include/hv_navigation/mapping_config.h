@@ -68,9 +68,9 @@ struct ObstacleGridConfig {
 
 /// The grid in the frame of the map.
 struct GlobalGridConfig {
-  double clear_range_m = 4.0;  ///< free space counts where it is seen from nearer
-  int clear_views = 5;         ///< so often before an obstacle is taken away
-  int mark_views = 2;          ///< and so often before one is added
+  double clear_range_m = 4.0;  ///< the saved map is corrected where free space is nearer
+  int clear_views = 5;         ///< in a row before an obstacle is taken away
+  int mark_views = 2;          ///< in a row before one is added
   double movable_m = 1.5;      ///< obstacles of a saved map that are larger stay
   double resolution_m = 0.1;   ///< without a saved map
   double max_side_m = 2000.0;  ///< the grid does not grow beyond
