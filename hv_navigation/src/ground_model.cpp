@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace hv::navigation {
 namespace {
@@ -90,35 +89,37 @@ void GroundModel::Grow(std::vector<Vector2i> front) {
   }
 }
 
+/// The nearer the ground was seen, the more a cell around counts.
 GroundModel::Expected GroundModel::ExpectedAt(const Vector2i& cell) const {
   Expected expected;
-  expected.unseen_m = std::numeric_limits<double>::infinity();
-  double count = 0.0;
+  const double voxel_m = columns_.voxel_m();
+  double sum = 0.0;
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
       const Vector2i near = cell + Vector2i(x, y);
       if (!columns_.Contains(near)) continue;
       const Cell& known = cells_[columns_.Index(near)];
       if (!Carries(known.kind)) continue;
-      const Vector2d way = -columns_.voxel_m() * Vector2d(x, y);
-      expected.height += known.height + known.slope.dot(way);
-      expected.slope += known.slope;
-      expected.way += way;
+      const Vector2d way = -voxel_m * Vector2d(x, y);
+      const double distance_m = known.unseen_m + voxel_m;
+      const double weight = 1.0 / (distance_m * distance_m);
+      expected.height += weight * (known.height + known.slope.dot(way));
+      expected.slope += weight * known.slope;
+      expected.way += weight * way;
       expected.unseen_m = std::min(expected.unseen_m, known.unseen_m + way.norm());
-      count += 1.0;
+      sum += weight;
     }
   }
-  expected.height /= count;
-  expected.slope /= count;
-  expected.way /= count;
-  expected.gap_m =
-      std::max(0.0, std::min(kLongestGap_m, expected.unseen_m - 1.5 * columns_.voxel_m()));
+  expected.height /= sum;
+  expected.slope /= sum;
+  expected.way /= sum;
+  expected.gap_m = std::max(0.0, std::min(kLongestGap_m, expected.unseen_m - 1.5 * voxel_m));
   return expected;
 }
 
 /// Whether the ground can be followed over the cell.
 bool GroundModel::Visit(const Vector2i& at) {
-  constexpr double kFlattening = 0.8;  // what is not seen is more likely level
+  constexpr double kFlattening_m = 1.0;  // what is not seen is more likely level
   constexpr double kHighestStep_m = 0.5;
   const std::size_t index = columns_.Index(at);
   const Expected expected = ExpectedAt(at);
@@ -138,7 +139,7 @@ bool GroundModel::Visit(const Vector2i& at) {
                  MiddleOf(*column.begin()) < expected.height + kHighestStep_m;
   if (cell.pending) return false;
   cell.kind = Ground::kAssumed;
-  cell.slope = kFlattening * expected.slope;
+  cell.slope = std::max(0.0, 1.0 - columns_.voxel_m() / kFlattening_m) * expected.slope;
   cell.unseen_m = expected.unseen_m;
   return true;
 }

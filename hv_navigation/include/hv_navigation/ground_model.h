@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -51,7 +52,7 @@ class GroundModel {
     Eigen::Vector2d slope = Eigen::Vector2d::Zero();
     Eigen::Vector2d way = Eigen::Vector2d::Zero();  ///< from the middle of these cells [m]
     double gap_m = 0.0;                             ///< beyond the next cell, since ground was seen
-    double unseen_m = 0.0;
+    double unseen_m = std::numeric_limits<double>::infinity();
   };
 
   std::vector<Eigen::Vector2i> PlaceRobot(const Pose& T_odom_base);
