@@ -114,7 +114,19 @@ void HeightOcTree::TakeVoxel(HeightNode* node, bool created, const Mark* mark, c
     const ScanMarks::Hit& hit = scan.marks.HitAt(scan.marks.IndexOf(mark));
     return TakeHit(node, occupied, hit, scan.model);
   }
-  if (!occupied || Contradicts(*node, *mark)) TakeMiss(node, scan.model);
+  // Nothing ends where more stands above: it is not low, so that any ray tells that it is gone.
+  const auto goes_on = [&] {
+    return node->by_lidar && OccupiedAbove(scan.marks.CellAt(scan.marks.IndexOf(mark)));
+  };
+  if (!occupied || Contradicts(*node, *mark) || goes_on()) TakeMiss(node, scan.model);
+}
+
+bool HeightOcTree::OccupiedAbove(const Eigen::Vector3i& cell) const {
+  const Eigen::Vector3i key = cell + Eigen::Vector3i(0, 0, 1) - Whole().low;
+  const HeightNode* above = search(octomap::OcTreeKey(static_cast<octomap::key_type>(key.x()),
+                                                      static_cast<octomap::key_type>(key.y()),
+                                                      static_cast<octomap::key_type>(key.z())));
+  return above != nullptr && isNodeOccupied(above);
 }
 
 /// Heights follow returns further out at once but in part, and come back slowly: noise widens them

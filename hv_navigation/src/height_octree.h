@@ -99,6 +99,7 @@ class HeightOcTree : public octomap::OccupancyOcTreeBase<HeightNode> {
   void Take(HeightNode* node, bool created, const ScanMarks::Mark* marks, std::size_t count,
             const Scan& scan);
   void TakeVoxel(HeightNode* node, bool created, const ScanMarks::Mark* mark, const Scan& scan);
+  bool OccupiedAbove(const Eigen::Vector3i& cell) const;
   void TakeHit(HeightNode* node, bool known, const ScanMarks::Hit& hit, const MarkModel& model);
   void TakeMiss(HeightNode* node, const MarkModel& model);
   void Empty(HeightNode* node);

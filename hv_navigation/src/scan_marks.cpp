@@ -62,6 +62,13 @@ Eigen::Vector3i ScanMarks::BlockAt(std::size_t block) const {
                                       index / (blocks_.x() * blocks_.y()));
 }
 
+Eigen::Vector3i ScanMarks::CellAt(std::size_t index) const {
+  const auto place = static_cast<int>(index % kBlockVoxels);
+  const auto gather = [](int bits) { return (bits & 1) | ((bits >> 2) & 2) | ((bits >> 4) & 4); };
+  return BlockAt(index / kBlockVoxels) * kBlockSide +
+         Eigen::Vector3i(gather(place), gather(place >> 1), gather(place >> 2));
+}
+
 void ScanMarks::AddHit(const Eigen::Vector3d& point) {
   const Eigen::Vector3i cell = point.array().floor().cast<int>();
   const std::size_t index = Index(cell);

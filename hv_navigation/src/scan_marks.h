@@ -57,6 +57,8 @@ class ScanMarks {
   const Mark* MarksOf(std::size_t block) const { return &marks_[block * kBlockVoxels]; }
   /// Of a voxel with kHit, given its place among all marks.
   const Hit& HitAt(std::size_t voxel) const;
+  /// The voxel at a place among all marks.
+  Eigen::Vector3i CellAt(std::size_t index) const;
   std::size_t IndexOf(const Mark* mark) const {
     return static_cast<std::size_t>(mark - marks_.data());
   }

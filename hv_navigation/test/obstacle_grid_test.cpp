@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hv_navigation/ground_model.h"
 #include "solid_scene.h"
 
 namespace hv::navigation {
@@ -67,6 +68,25 @@ TEST_F(ObstacleGridTest, LevelFloorIsFreeAndWallsAreNot) {
     EXPECT_GE(Count(grid, -3.0, 3.8, y, kFree), 65) << y;
     EXPECT_GE(Count(grid, 3.85, 4.25, y, kOccupied), 1) << y;
     EXPECT_EQ(Count(grid, 4.5, 6.0, y, kFree), 0) << y;
+  }
+}
+
+TEST_F(ObstacleGridTest, GroundIsNotFollowedUpWalls) {
+  scene_.AddFloor(-20.0, 20.0);
+  scene_.AddBox({3.0, -5.0, 0.0}, {3.3, 5.0, 2.5});
+  Approach(-0.5, 1.0);
+  const SurfaceColumns columns(map_, At(1.0, 0.0).translation(), 12.0);
+  const GroundModel ground(columns, GroundConfig{}, At(1.0, 0.0));
+  for (double y = -1.95; y < 2.0; y += 0.1) {
+    const auto index = [&](double x) {
+      const Vector2d cell = (Vector2d(x, y) - columns.origin()) / columns.voxel_m();
+      return columns.Index(cell.array().floor().cast<int>());
+    };
+    EXPECT_EQ(ground.KindAt(index(2.75)), Ground::kSeen) << y;
+    EXPECT_NEAR(ground.HeightAt(index(2.75)), 0.0, 0.01) << y;
+    EXPECT_TRUE(ground.KindAt(index(2.95)) == Ground::kStep ||
+                ground.KindAt(index(3.05)) == Ground::kStep)
+        << y;
   }
 }
 

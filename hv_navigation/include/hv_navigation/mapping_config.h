@@ -26,7 +26,7 @@ struct ObstacleMapConfig {
   double least = 0.2;            ///< probabilities stay within, so that changes show soon
   double most = 0.9;
   SensorModelConfig lidar;
-  SensorModelConfig depth{0.6, 0.4, 0.15, 3.0, 3.0};
+  SensorModelConfig depth{0.7, 0.4, 0.15, 3.0, 3.0};
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
