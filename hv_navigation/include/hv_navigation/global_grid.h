@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "hv_core/occupancy_grid.h"
+#include "hv_navigation/mapping_config.h"
+#include "hv_navigation/planar.h"
+
+namespace hv::navigation {
+
+/// The grid that routes are planned in, in the frame of the map: a saved map, if there is one,
+/// corrected by what is seen. It grows where the robot gets beyond.
+///
+/// An obstacle is added once `mark_views` views in a row show it, and taken away after
+/// `clear_views` views in a row that show free space. What the saved map holds is taken away only
+/// where it is movable, that is small and apart from everything else, and only by views from near.
+/// Walls, and what stands against them, stay whatever is seen through them: an error of
+/// localisation of a few centimetres must not open a wall.
+///
+/// Deterministic. Not thread-safe.
+class GlobalGrid {
+ public:
+  explicit GlobalGrid(const GlobalGridConfig& config,
+                      std::optional<OccupancyGrid> saved = std::nullopt);
+
+  /// Takes a view: obstacles in the frame of odometry, and the robot there. Views whose pose is not
+  /// finite, and cells beyond the largest grid, are left out.
+  void Update(const OccupancyGrid& observed, const PlanarPose& T_map_odom,
+              const Eigen::Vector2d& robot_in_odom);
+
+  /// Forgets what was seen, for when the pose in the map was wrong.
+  void ForgetViews();
+
+  const OccupancyGrid& grid() const { return grid_; }
+  std::size_t left_out() const { return left_out_; }  ///< cells beyond the largest grid
+
+ private:
+  void FindMovable();
+  std::pair<int, int> GrowthAlong(int axis, double low_m, double high_m) const;
+  void GrowToHold(const Eigen::Vector2d& low, const Eigen::Vector2d& high);
+  OccupancyGrid Turned(const OccupancyGrid& observed, const PlanarPose& T_map_odom) const;
+  void TakeCell(std::size_t index, bool occupied, bool near);
+
+  GlobalGridConfig config_;
+  OccupancyGrid grid_;
+  std::vector<std::int8_t> saved_;   ///< of the saved map; unknown elsewhere
+  std::vector<std::uint8_t> fixed_;  ///< 1: an obstacle of the saved map that stays
+  std::vector<std::int8_t> run_;     ///< views in a row with an obstacle, negative: without
+  std::size_t left_out_ = 0;
+};
+
+}  // namespace hv::navigation
