@@ -13,7 +13,7 @@ struct AcceptanceConfig {
   double min_fit_anywhere = 0.85;
   double min_overlap = 0.7;
   double max_seen_through = 0.1;
-  double min_lead = 2.5;
+  double min_lead = 2.0;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

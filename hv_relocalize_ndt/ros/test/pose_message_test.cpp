@@ -18,11 +18,13 @@ geometry_msgs::PoseWithCovariance Clicked(double x_variance, double yaw_variance
 }
 
 TEST(GuessFromTest, ReachesAsFarAsTheMessageDoubts) {
-  const PoseGuess guess = GuessFrom(Clicked(4.0, 0.25), RelocalizeConfig());
+  RelocalizeConfig least;
+  least.guess_radius_m = 1.0;
+  const PoseGuess guess = GuessFrom(Clicked(4.0, 0.25), least);
   EXPECT_EQ(guess.T_map_scan.translation().x(), 3.0);
   EXPECT_DOUBLE_EQ(guess.radius_m, 6.0);
   EXPECT_DOUBLE_EQ(guess.heading_rad, 1.5);
-  EXPECT_DOUBLE_EQ(GuessFrom(Clicked(0.0, 100.0), RelocalizeConfig()).heading_rad, M_PI);
+  EXPECT_DOUBLE_EQ(GuessFrom(Clicked(0.0, 100.0), least).heading_rad, M_PI);
 }
 
 TEST(GuessFromTest, ReachesAsFarAsConfiguredAtLeast) {
