@@ -137,7 +137,7 @@ DepthImage Wall() {
   image.height = 480;
   for (int i = 0; i < image.width * image.height; ++i) {
     const int noise = i * 7919 % 5003;
-    image.millimetres.push_back(static_cast<std::uint16_t>(noise < 100 ? 500 + noise : 2000));
+    image.depth_mm.push_back(static_cast<std::uint16_t>(noise < 100 ? 500 + noise : 2000));
   }
   return image;
 }

@@ -10,7 +10,7 @@ namespace hv::navigation {
 namespace {
 
 bool IsClosed(std::int8_t cell, ClearanceGrid::Unknown unknown) {
-  return cell < 0 ? unknown == ClearanceGrid::Unknown::kOccupied : ClearanceGrid::IsObstacle(cell);
+  return cell < 0 ? unknown == ClearanceGrid::Unknown::kOccupied : OccupancyGrid::IsOccupied(cell);
 }
 
 /// From the border of the obstacle, not the centre of its cell [m].
@@ -68,16 +68,6 @@ ClearanceGrid ClearanceGrid::WithObstacles(const std::vector<Eigen::Vector2i>& c
     }
   }
   return grid;
-}
-
-Eigen::Vector2i ClearanceGrid::CellOf(const Eigen::Vector2d& position) const {
-  constexpr double kFarthest = 1e8;
-  const Eigen::Array2d cell = ((position - grid_.origin) / grid_.resolution_m).array().floor();
-  return cell.max(-kFarthest).min(kFarthest).cast<int>();
-}
-
-Eigen::Vector2d ClearanceGrid::CenterOf(const Eigen::Vector2i& cell) const {
-  return grid_.origin + grid_.resolution_m * (cell.cast<double>() + Eigen::Vector2d::Constant(0.5));
 }
 
 }  // namespace hv::navigation

@@ -17,7 +17,7 @@ bool IsUsable(const DepthImage& image, const DepthCameraModel& camera) {
       static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   const bool model = std::isfinite(camera.fx) && std::isfinite(camera.fy) && camera.fx > 0.0 &&
                      camera.fy > 0.0 && std::isfinite(camera.cx) && std::isfinite(camera.cy);
-  return image.millimetres.size() == pixels && model;
+  return image.depth_mm.size() == pixels && model;
 }
 
 /// The image with zeros where the depth is outside of the limits.
@@ -25,7 +25,7 @@ cv::Mat WithinLimits(const DepthImage& image, const DepthConfig& config, DepthRe
   cv::Mat depth(image.height, image.width, CV_16U);
   const auto near = static_cast<int>(std::lround(1e3 * config.min_range_m));
   const auto far = static_cast<int>(std::lround(1e3 * config.max_range_m));
-  std::transform(image.millimetres.begin(), image.millimetres.end(), depth.begin<Millimetres>(),
+  std::transform(image.depth_mm.begin(), image.depth_mm.end(), depth.begin<Millimetres>(),
                  [&](Millimetres pixel) -> Millimetres {
                    if (pixel == 0) ++report.without_depth;
                    if (pixel >= near && pixel <= far) return pixel;
@@ -119,7 +119,7 @@ void ProjectTile(const cv::Mat& depth, const cv::Rect& tile, const DepthCameraMo
 DepthCloud ProjectDepth(const DepthImage& image, const DepthCameraModel& camera,
                         const DepthConfig& config) {
   DepthCloud cloud;
-  cloud.report.pixels = image.millimetres.size();
+  cloud.report.pixels = image.depth_mm.size();
   cloud.report.refused = !IsUsable(image, camera);
   if (cloud.report.refused) return cloud;
   cv::Mat depth = WithinLimits(image, config, cloud.report);

@@ -55,7 +55,7 @@ std::optional<Candidate> DynamicWindow::Drive() const {
 std::optional<Candidate> DynamicWindow::Turn(double turn) const {
   const double other = turn - std::copysign(2.0 * M_PI, turn);
   for (const double way : {turn, other}) {
-    if (TurnIsFree(way)) return TurnCandidate(way);
+    if (!footprint_.CollidesTurning(grid_, pose_, way)) return TurnCandidate(way);
   }
   return std::nullopt;
 }
@@ -158,16 +158,6 @@ bool DynamicWindow::Rollout(const Velocity& target, Candidate& candidate) const 
       config_.clearance_weight * nearness / free - config_.smoothness_weight * change -
       config_.collision_weight * (1.0 - static_cast<double>(free) / steps);
   return progress_m > kLeastProgress_m;
-}
-
-bool DynamicWindow::TurnIsFree(double turn) const {
-  const double step = 0.5 * grid_.grid().resolution_m / footprint_.CircumscribedRadius();
-  const int steps = static_cast<int>(std::ceil(std::abs(turn) / step));
-  for (int i = 1; i <= steps; ++i) {
-    const PlanarPose pose{pose_.position, pose_.yaw + turn * i / steps};
-    if (footprint_.Collides(grid_, pose)) return false;
-  }
-  return true;
 }
 
 Candidate DynamicWindow::TurnCandidate(double turn) const {

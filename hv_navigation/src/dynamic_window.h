@@ -43,7 +43,6 @@ class DynamicWindow {
   double Nearness(const PlanarPose& pose) const;
   double Progress(const PlanarPose& pose) const;
   bool Rollout(const Velocity& target, Candidate& candidate) const;
-  bool TurnIsFree(double turn) const;
   Candidate TurnCandidate(double turn) const;
 
   const LocalPlannerConfig& config_;

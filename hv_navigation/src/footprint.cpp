@@ -81,4 +81,14 @@ bool Footprint::Collides(const ClearanceGrid& grid, const PlanarPose& pose) cons
   return PartChecker(grid, pose).Touches(whole);
 }
 
+bool Footprint::CollidesTurning(const ClearanceGrid& grid, const PlanarPose& pose,
+                                double turn) const {
+  const double step = 0.5 * grid.grid().resolution_m / CircumscribedRadius();
+  const int steps = static_cast<int>(std::ceil(std::abs(turn) / step));
+  for (int i = 1; i <= steps; ++i) {
+    if (Collides(grid, {pose.position, pose.yaw + turn * i / steps})) return true;
+  }
+  return false;
+}
+
 }  // namespace hv::navigation

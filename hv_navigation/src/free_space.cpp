@@ -52,14 +52,7 @@ bool FreeSpace::IsFree(const PlanarPose& pose) const {
 
 bool FreeSpace::TurnIsFree(const PlanarPose& from, double turn) const {
   if (Roaming(from.position) > 0.0) return true;
-  const double step = 0.5 * grid_.grid().resolution_m / circumscribed_m_;
-  const int steps = static_cast<int>(std::ceil(std::abs(turn) / step));
-  const Footprint& footprint = At(from.position);
-  for (int i = 1; i <= steps; ++i) {
-    const PlanarPose pose{from.position, from.yaw + turn * i / steps};
-    if (footprint.Collides(grid_, pose)) return false;
-  }
-  return true;
+  return !At(from.position).CollidesTurning(grid_, from, turn);
 }
 
 bool FreeSpace::DriveIsFree(const PlanarPose& from, double length_m) const {

@@ -12,25 +12,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector2i;
 
-constexpr int kOccupiedFrom = 50;  // percent, as in nav_msgs/OccupancyGrid
-
-bool IsOccupied(std::int8_t cell) { return cell >= kOccupiedFrom; }
-
 std::size_t IndexIn(int width, int x, int y) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
          static_cast<std::size_t>(x);
-}
-
-Vector2i CellIn(const OccupancyGrid& grid, const Vector2d& position) {
-  return ((position - grid.origin) / grid.resolution_m).array().floor().cast<int>();
-}
-
-Vector2d CenterIn(const OccupancyGrid& grid, const Vector2i& cell) {
-  return grid.origin + grid.resolution_m * (cell.cast<double>() + Vector2d::Constant(0.5));
-}
-
-bool Holds(const OccupancyGrid& grid, const Vector2i& cell) {
-  return cell.x() >= 0 && cell.y() >= 0 && cell.x() < grid.width && cell.y() < grid.height;
 }
 
 bool IsWhole(const OccupancyGrid& grid) {
@@ -79,7 +63,7 @@ GlobalGrid::GlobalGrid(const GlobalGridConfig& config, std::optional<OccupancyGr
 void GlobalGrid::FindMovable() {
   cv::Mat occupied(grid_.height, grid_.width, CV_8U);
   std::transform(saved_.begin(), saved_.end(), occupied.begin<std::uint8_t>(),
-                 [](std::int8_t cell) { return IsOccupied(cell) ? 255 : 0; });
+                 [](std::int8_t cell) { return OccupancyGrid::IsOccupied(cell) ? 255 : 0; });
   cv::Mat labels;
   cv::Mat statistics;
   cv::Mat centers;
@@ -138,17 +122,18 @@ void GlobalGrid::Update(const OccupancyGrid& observed, const PlanarPose& T_map_o
   GrowToHold(low, high);
   const Vector2d robot = T_map_odom * robot_in_odom;
   const OccupancyGrid view = Turned(observed, T_map_odom);
-  const Vector2i first = CellIn(grid_, CenterIn(view, {0, 0}));
+  const Vector2i first = grid_.CellOf(view.CenterOf({0, 0}));
   for (int y = 0; y < view.height; ++y) {
     for (int x = 0; x < view.width; ++x) {
       if (view.At(x, y) == OccupancyGrid::kUnknown) continue;
       const Vector2i cell = first + Vector2i(x, y);
-      if (!Holds(grid_, cell)) {
+      if (!grid_.Contains(cell)) {
         ++left_out_;
         continue;
       }
-      const bool near = (CenterIn(grid_, cell) - robot).norm() <= config_.clear_range_m;
-      TakeCell(IndexIn(grid_.width, cell.x(), cell.y()), IsOccupied(view.At(x, y)), near);
+      const bool near = (grid_.CenterOf(cell) - robot).norm() <= config_.clear_range_m;
+      TakeCell(IndexIn(grid_.width, cell.x(), cell.y()), OccupancyGrid::IsOccupied(view.At(x, y)),
+               near);
     }
   }
 }
@@ -157,8 +142,8 @@ void GlobalGrid::Update(const OccupancyGrid& observed, const PlanarPose& T_map_o
 OccupancyGrid GlobalGrid::Turned(const OccupancyGrid& observed,
                                  const PlanarPose& T_map_odom) const {
   const auto [low, high] = BoundsOf(observed, T_map_odom);
-  const Vector2i first = CellIn(grid_, low);
-  const Vector2i size = CellIn(grid_, high) - first + Vector2i::Ones();
+  const Vector2i first = grid_.CellOf(low);
+  const Vector2i size = grid_.CellOf(high) - first + Vector2i::Ones();
   OccupancyGrid view;
   view.resolution_m = grid_.resolution_m;
   view.origin = grid_.origin + grid_.resolution_m * first.cast<double>();
@@ -168,23 +153,23 @@ OccupancyGrid GlobalGrid::Turned(const OccupancyGrid& observed,
   const PlanarPose T_odom_map = T_map_odom.Inverse();
   for (int y = 0; y < size.y(); ++y) {
     for (int x = 0; x < size.x(); ++x) {
-      const Vector2i cell = CellIn(observed, T_odom_map * CenterIn(view, {x, y}));
-      if (Holds(observed, cell)) view.At(x, y) = observed.At(cell.x(), cell.y());
+      const Vector2i cell = observed.CellOf(T_odom_map * view.CenterOf({x, y}));
+      if (observed.Contains(cell)) view.At(x, y) = observed.At(cell.x(), cell.y());
     }
   }
   // Sampling alone would lose obstacles as thin as a cell where the frames are turned.
   for (int y = 0; y < observed.height; ++y) {
     for (int x = 0; x < observed.width; ++x) {
-      if (!IsOccupied(observed.At(x, y))) continue;
-      const Vector2i cell = CellIn(view, T_map_odom * CenterIn(observed, {x, y}));
-      if (Holds(view, cell)) view.At(cell.x(), cell.y()) = OccupancyGrid::kOccupied;
+      if (!OccupancyGrid::IsOccupied(observed.At(x, y))) continue;
+      const Vector2i cell = view.CellOf(T_map_odom * observed.CenterOf({x, y}));
+      if (view.Contains(cell)) view.At(cell.x(), cell.y()) = OccupancyGrid::kOccupied;
     }
   }
   return view;
 }
 
 void GlobalGrid::TakeCell(std::size_t index, bool occupied, bool near) {
-  const bool was_saved = IsOccupied(saved_[index]);
+  const bool was_saved = OccupancyGrid::IsOccupied(saved_[index]);
   if (was_saved && !occupied && !near) return;
   const int run = run_[index];
   const int next = occupied ? std::min(config_.mark_views, std::max(0, run) + 1)

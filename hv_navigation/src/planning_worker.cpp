@@ -11,7 +11,7 @@ bool IsSeenFree(const SeenObstacles& seen, const Eigen::Vector2d& place) {
   const Eigen::Vector2i cell = seen.grid->CellOf(seen.T_map_grid.Inverse() * place);
   if (!seen.grid->Contains(cell)) return false;
   const std::int8_t value = seen.grid->grid().At(cell.x(), cell.y());
-  return value != OccupancyGrid::kUnknown && !ClearanceGrid::IsObstacle(value);
+  return value != OccupancyGrid::kUnknown && !OccupancyGrid::IsOccupied(value);
 }
 
 void AddObstacles(const ClearanceGrid& map, const SeenObstacles& seen, const SeenObstacles* newer,
@@ -20,7 +20,7 @@ void AddObstacles(const ClearanceGrid& map, const SeenObstacles& seen, const See
   const double known_m = 1.5 * map.grid().resolution_m;
   for (int row = 0; row < cells.height; ++row) {
     for (int column = 0; column < cells.width; ++column) {
-      if (!ClearanceGrid::IsObstacle(cells.At(column, row))) continue;
+      if (!OccupancyGrid::IsOccupied(cells.At(column, row))) continue;
       const Eigen::Vector2d place = seen.T_map_grid * seen.grid->CenterOf({column, row});
       const Eigen::Vector2i cell = map.CellOf(place);
       if (!map.Contains(cell) || map.ClearanceAt(cell) <= known_m) continue;

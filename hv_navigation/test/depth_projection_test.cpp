@@ -29,8 +29,8 @@ DepthImage Render(const SolidScene& scene, const Pose& T_odom_camera, double noi
           scene.Cast(T_odom_camera.translation(), T_odom_camera.linear() * ray.normalized());
       double depth = range / ray.norm();
       if (noise > 0.0 && uniform(random) < noise) depth = 0.5 + 3.0 * uniform(random);
-      image.millimetres.push_back(
-          depth < 60.0 ? static_cast<std::uint16_t>(std::lround(1e3 * depth)) : std::uint16_t{0});
+      image.depth_mm.push_back(depth < 60.0 ? static_cast<std::uint16_t>(std::lround(1e3 * depth))
+                                            : std::uint16_t{0});
     }
   }
   return image;
@@ -81,10 +81,9 @@ TEST_P(ThinPost, StaysAndFlyingPixelsGo) {
   const Pose T_odom_camera = CameraPose(0.0, 0.5, 0.0);
   DepthImage image = Render(scene, T_odom_camera);
   std::size_t rims = 0;
-  for (std::size_t i = 1; i + 1 < image.millimetres.size(); ++i) {
-    if (image.millimetres[i + 1] + 1000 >= image.millimetres[i]) continue;
-    image.millimetres[i] =
-        static_cast<std::uint16_t>((image.millimetres[i] + image.millimetres[i + 1]) / 2);
+  for (std::size_t i = 1; i + 1 < image.depth_mm.size(); ++i) {
+    if (image.depth_mm[i + 1] + 1000 >= image.depth_mm[i]) continue;
+    image.depth_mm[i] = static_cast<std::uint16_t>((image.depth_mm[i] + image.depth_mm[i + 1]) / 2);
     ++rims;
   }
   ASSERT_GT(rims, 150U);
@@ -132,7 +131,7 @@ TEST(DepthProjectionTest, BadImagesGiveNoPoints) {
   EXPECT_FALSE(refused(good, kCamera));
   EXPECT_TRUE(refused({}, kCamera));
   DepthImage bad = good;
-  bad.millimetres.pop_back();
+  bad.depth_mm.pop_back();
   EXPECT_TRUE(refused(bad, kCamera));
   bad = good;
   bad.width = -640;
@@ -143,7 +142,7 @@ TEST(DepthProjectionTest, BadImagesGiveNoPoints) {
   EXPECT_TRUE(refused(good, model));
   EXPECT_TRUE(refused(good, {}));
   bad = good;
-  std::fill(bad.millimetres.begin(), bad.millimetres.end(), std::uint16_t{0});
+  std::fill(bad.depth_mm.begin(), bad.depth_mm.end(), std::uint16_t{0});
   EXPECT_FALSE(refused(bad, kCamera));
   EXPECT_TRUE(ProjectDepth(bad, kCamera, DepthConfig{}).points.empty());
 }

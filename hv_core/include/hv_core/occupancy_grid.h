@@ -21,6 +21,22 @@ struct OccupancyGrid {
   int height = 0;                                    ///< cells along y
   std::vector<std::int8_t> cells;                    ///< rows of growing y, x fastest
 
+  /// Whether a cell is known to be occupied.
+  static bool IsOccupied(std::int8_t cell) { return cell >= kOccupied / 2; }
+
+  /// The cell that holds `position`, which may lie outside; far outside for one that is nowhere.
+  Eigen::Vector2i CellOf(const Eigen::Vector2d& position) const {
+    constexpr double kFarthest = 1e8;
+    const Eigen::Array2d cell = ((position - origin) / resolution_m).array().floor();
+    return cell.max(-kFarthest).min(kFarthest).cast<int>();
+  }
+  Eigen::Vector2d CenterOf(const Eigen::Vector2i& cell) const {
+    return origin + resolution_m * (cell.cast<double>() + Eigen::Vector2d::Constant(0.5));
+  }
+  bool Contains(const Eigen::Vector2i& cell) const {
+    return cell.x() >= 0 && cell.y() >= 0 && cell.x() < width && cell.y() < height;
+  }
+
   std::int8_t& At(int column, int row) { return cells[Index(column, row)]; }
   std::int8_t At(int column, int row) const { return cells[Index(column, row)]; }
 

@@ -18,17 +18,12 @@ class ClearanceGrid {
   /// The same with `cells`, which must lie inside, occupied too.
   ClearanceGrid WithObstacles(const std::vector<Eigen::Vector2i>& cells) const;
 
-  /// Whether a cell of a grid is known to be occupied.
-  static bool IsObstacle(std::int8_t cell) { return cell >= kOccupiedFrom; }
-
   const OccupancyGrid& grid() const { return grid_; }
 
   /// The cell that holds `position`, which may lie outside of the grid.
-  Eigen::Vector2i CellOf(const Eigen::Vector2d& position) const;
-  Eigen::Vector2d CenterOf(const Eigen::Vector2i& cell) const;
-  bool Contains(const Eigen::Vector2i& cell) const {
-    return cell.x() >= 0 && cell.y() >= 0 && cell.x() < grid_.width && cell.y() < grid_.height;
-  }
+  Eigen::Vector2i CellOf(const Eigen::Vector2d& position) const { return grid_.CellOf(position); }
+  Eigen::Vector2d CenterOf(const Eigen::Vector2i& cell) const { return grid_.CenterOf(cell); }
+  bool Contains(const Eigen::Vector2i& cell) const { return grid_.Contains(cell); }
 
   /// From the centre of the cell of `position` to the nearest border of an obstacle [m]; 0 in
   /// obstacles, and outside of the grid when unknown places are obstacles.
@@ -46,8 +41,6 @@ class ClearanceGrid {
   bool OccupiedAt(const Eigen::Vector2d& position) const { return ClearanceAt(position) <= 0.0; }
 
  private:
-  static constexpr int kOccupiedFrom = 50;  // percent, as in nav_msgs/OccupancyGrid
-
   double ClearanceInside(int column, int row) const {
     return static_cast<double>(
         clearance_m_[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.width) +

@@ -4,19 +4,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "hv_core/depth_image.h"
 #include "hv_core/scan.h"
-#include "hv_core/time.h"
 #include "hv_navigation/mapping_config.h"
 
 namespace hv::navigation {
-
-/// Depth along the optical axis, row by row.
-struct DepthImage {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint16_t> millimetres;  ///< 0: no depth
-  Time stamp;
-};
 
 /// Pinhole without distortion, as depth cameras deliver rectified images [px].
 struct DepthCameraModel {

@@ -29,6 +29,9 @@ struct Footprint {
   /// Whether the robot with its margin would touch an obstacle. Decided by the distances where
   /// these suffice, else cell by cell.
   bool Collides(const ClearanceGrid& grid, const PlanarPose& pose) const;
+
+  /// The same for a turn on the spot by `turn` [rad], the pose before it left out.
+  bool CollidesTurning(const ClearanceGrid& grid, const PlanarPose& pose, double turn) const;
 };
 
 }  // namespace hv::navigation

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "hv_core/config.h"
+#include "hv_core/depth_image.h"
 #include "hv_core/se3.h"
-#include "hv_core/time.h"
 #include "hv_sim/pedestrian.h"
 #include "hv_sim/ray_caster.h"
 
@@ -35,14 +35,6 @@ struct DepthCameraConfig {
   double cx() const { return 0.5 * (width - 1); }  ///< principal point [px]
   double cy() const { return 0.5 * (height - 1); }
   Pose mounting() const;  ///< T_base_camera as a transform
-};
-
-/// Depth along the optical axis of each pixel, row by row from the top left [mm]; 0: unknown.
-struct DepthImage {
-  Time stamp;
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint16_t> depth_mm;
 };
 
 /// From the optical frame (x right, y down, z along the view) to that of the camera.
