@@ -115,7 +115,7 @@ NavigationOutput Navigator::Update(const NavigationInput& input) {
   FollowFrame(input);
   CheckPath(input);
   ConsiderPlanning(input);
-  TakePlan(input);
+  TakePlan(input, output);
   if (course_) output.plan = course_->path;
   output.recoveries = recovery_->tried();
   Drive(input, output);
@@ -210,9 +210,10 @@ double Navigator::LeastRemaining(const GlobalPlan& plan) const {
   return course_->least_remaining_m + (detour_m > kDetour_m ? detour_m : 0.0);
 }
 
-void Navigator::TakePlan(const NavigationInput& input) {
+void Navigator::TakePlan(const NavigationInput& input, NavigationOutput& output) {
   const std::optional<FinishedPlan> finished = worker_.Take();
   if (!finished || finished->goal_id != goal_id_) return;
+  output.planning_ms = finished->planning_ms;
   const GlobalPlan& plan = finished->plan;
   pursuit_->problem = plan.reason;
   pursuit_->problem_certain =

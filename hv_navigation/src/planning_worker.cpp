@@ -1,5 +1,6 @@
 #include "hv_navigation/planning_worker.h"
 
+#include <chrono>
 #include <utility>
 #include <vector>
 
@@ -56,8 +57,12 @@ PlanningWorker::~PlanningWorker() {
 }
 
 FinishedPlan PlanningWorker::Run(const PlanningJob& job) const {
+  const auto begin = std::chrono::steady_clock::now();
   const auto grid = WithSeenObstacles(job);
-  return {job.goal_id, planner_.Plan(*grid, job.request), grid != job.map};
+  FinishedPlan finished{job.goal_id, planner_.Plan(*grid, job.request), grid != job.map, 0.0};
+  const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
+  finished.planning_ms = taken.count();
+  return finished;
 }
 
 void PlanningWorker::Request(PlanningJob job) {

@@ -47,6 +47,7 @@ struct NavigationOutput {
   Path trajectory;                         ///< of the next seconds, in the local frame
   double remaining_m = 0.0;                ///< of the plan
   int recoveries = 0;                      ///< tried since it last got on
+  std::optional<double> planning_ms;       ///< of a plan that came in this cycle, found or not
   bool clear_local_grid = false;           ///< asks for the obstacles seen so far to be forgotten
   std::optional<NavigationResult> result;  ///< in the cycle in which a goal ends
 };
@@ -80,7 +81,7 @@ class Navigator {
   void CheckPath(const NavigationInput& input);
   void ConsiderPlanning(const NavigationInput& input);
   PlanningJob JobNow(const NavigationInput& input) const;
-  void TakePlan(const NavigationInput& input);
+  void TakePlan(const NavigationInput& input, NavigationOutput& output);
   bool IsWorthTaking(const GlobalPlan& plan) const;
   double LeastRemaining(const GlobalPlan& plan) const;
   void Drive(const NavigationInput& input, NavigationOutput& output);

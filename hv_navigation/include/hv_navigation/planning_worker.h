@@ -29,6 +29,7 @@ struct FinishedPlan {
   int goal_id = 0;
   GlobalPlan plan;
   bool with_obstacles = false;  ///< obstacles seen that the map lacks were minded
+  double planning_ms = 0.0;     ///< with the time to mind them
 };
 
 /// The map with the obstacles seen. The same pointer when these add nothing.
