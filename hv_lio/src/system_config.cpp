@@ -53,6 +53,7 @@ void SystemConfig::Describe(ConfigVisitor& visitor) {
   visitor.Foreign("map");
   visitor.Foreign("mapping");
   visitor.Foreign("localization");
+  visitor.Foreign("navigation");
 }
 
 void SystemConfig::Validate(ConfigProblems& problems) const {

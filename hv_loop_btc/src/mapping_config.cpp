@@ -33,7 +33,8 @@ void MappingConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("loop", loop, "loop closing");
   visitor.Section("map", map, "what is made of the keyframes when a map is saved");
   visitor.Section("mapping", mapping, "what the loop closing node publishes");
-  for (const char* section : {"input", "points", "odometry", "output", "localization"}) {
+  for (const char* section :
+       {"input", "points", "odometry", "output", "localization", "navigation"}) {
     visitor.Foreign(section);
   }
 }

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "hv_navigation/depth_projection.h"
 #include "hv_navigation/obstacle_grid.h"
 #include "hv_navigation/obstacle_map.h"
+#include "hv_navigation/planning_config.h"
+#include "hv_navigation/surroundings.h"
 #include "hv_sim/lidar.h"
 #include "hv_sim/world.h"
 
@@ -159,6 +162,36 @@ void InsertDepth(benchmark::State& state) {
   state.counters["points"] = static_cast<double>(cloud.points.size());
 }
 BENCHMARK(InsertDepth)->Unit(benchmark::kMillisecond);
+
+/// All that is done with a scan: obstacle map, local grid, and the grid of the map, grown from
+/// nothing or over a saved map of 150 x 150 m.
+void UpdateSurroundings(benchmark::State& state) {
+  const Drive& drive = Drive::Get();
+  MappingConfig config;
+  config.obstacle_map = ConfigOf(state);
+  std::optional<OccupancyGrid> saved;
+  if (state.range(1) != 0) {
+    saved = OccupancyGrid();
+    saved->resolution_m = 0.05;
+    saved->width = saved->height = 3000;
+    saved->origin.setConstant(-75.0);
+    saved->cells.assign(9'000'000, OccupancyGrid::kFree);
+  }
+  Surroundings surroundings(config, PlanningConfig().NeededClearance(), saved);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    surroundings.AddScan(Time(), drive.scans[i], drive.T_odom_lidar[i], drive.T_odom_base[i]);
+    benchmark::DoNotOptimize(surroundings.Update(drive.T_odom_base[i], Pose::Identity()).map);
+    i = (i + 1) % drive.scans.size();
+  }
+  state.counters["points"] = static_cast<double>(drive.scans[0].size());
+}
+BENCHMARK(UpdateSurroundings)
+    ->ArgNames({"voxel_cm", "saved"})
+    ->Args({10, 0})
+    ->Args({10, 1})
+    ->Args({5, 0})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace hv::navigation

@@ -55,6 +55,7 @@ GlobalGrid::GlobalGrid(const GlobalGridConfig& config, std::optional<OccupancyGr
   grid_.resolution_m = config.resolution_m;
   if (!saved || !IsWhole(*saved)) return;
   grid_ = std::move(*saved);
+  changes_.everything = true;
   saved_ = grid_.cells;
   run_.assign(saved_.size(), 0);
   FindMovable();
@@ -111,6 +112,7 @@ void GlobalGrid::GrowToHold(const Vector2d& low, const Vector2d& high) {
   Move(run_, grid_, larger, std::int8_t{0});
   larger.cells = std::move(grid_.cells);
   grid_ = std::move(larger);
+  changes_.everything = true;
 }
 
 void GlobalGrid::Update(const OccupancyGrid& observed, const PlanarPose& T_map_odom,
@@ -132,8 +134,7 @@ void GlobalGrid::Update(const OccupancyGrid& observed, const PlanarPose& T_map_o
         continue;
       }
       const bool near = (grid_.CenterOf(cell) - robot).norm() <= config_.clear_range_m;
-      TakeCell(IndexIn(grid_.width, cell.x(), cell.y()), OccupancyGrid::IsOccupied(view.At(x, y)),
-               near);
+      TakeCell(cell, OccupancyGrid::IsOccupied(view.At(x, y)), near);
     }
   }
 }
@@ -168,7 +169,8 @@ OccupancyGrid GlobalGrid::Turned(const OccupancyGrid& observed,
   return view;
 }
 
-void GlobalGrid::TakeCell(std::size_t index, bool occupied, bool near) {
+void GlobalGrid::TakeCell(const Vector2i& at, bool occupied, bool near) {
+  const std::size_t index = IndexIn(grid_.width, at.x(), at.y());
   const bool was_saved = OccupancyGrid::IsOccupied(saved_[index]);
   if (was_saved && !occupied && !near) return;
   const int run = run_[index];
@@ -176,15 +178,24 @@ void GlobalGrid::TakeCell(std::size_t index, bool occupied, bool near) {
                             : std::max(-config_.clear_views, std::min(0, run) - 1);
   run_[index] = static_cast<std::int8_t>(next);
   std::int8_t& cell = grid_.cells[index];
+  const std::int8_t before = cell;
   if (next >= config_.mark_views) cell = OccupancyGrid::kOccupied;
   const bool is_free =
       next <= -config_.clear_views || (!occupied && cell == OccupancyGrid::kUnknown);
   if (is_free && fixed_[index] == 0) cell = OccupancyGrid::kFree;
+  if (cell != before) NoteChange(at);
+}
+
+void GlobalGrid::NoteChange(const Vector2i& at) {
+  if (!changes_.cells) changes_.cells = CellBox{at, at};
+  changes_.cells->low = changes_.cells->low.cwiseMin(at);
+  changes_.cells->high = changes_.cells->high.cwiseMax(at);
 }
 
 void GlobalGrid::ForgetViews() {
   grid_.cells = saved_;
   std::fill(run_.begin(), run_.end(), std::int8_t{0});
+  changes_.everything = true;
 }
 
 }  // namespace hv::navigation

@@ -47,6 +47,7 @@ void ObstacleMapConfig::Validate(ConfigProblems& problems) const {
 }
 
 void DepthConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Field("required", required, "the robot stands until the first image has come");
   visitor.Field("min_range_m", min_range_m, "nearest depth [m]");
   visitor.Field("max_range_m", max_range_m, "furthest depth [m]");
   visitor.Field("speckle_step_m", speckle_step_m,
@@ -90,11 +91,14 @@ void GroundConfig::Validate(ConfigProblems& problems) const {
 }
 
 void ObstacleGridConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Field("side_m", side_m, "of the square around the robot that is seen as a grid [m]");
   visitor.Field("robot_height_m", robot_height_m, "height of the robot [m]");
   visitor.Field("height_margin_m", height_margin_m, "kept free above the robot [m]");
 }
 
 void ObstacleGridConfig::Validate(ConfigProblems& problems) const {
+  problems.Require(side_m >= 4.0 && side_m <= 200.0, "obstacle_grid.side_m",
+                   "must lie between 4 and 200");
   problems.Require(robot_height_m > 0.0, "obstacle_grid.robot_height_m", "must be positive");
   problems.Require(height_margin_m >= 0.0, "obstacle_grid.height_margin_m", "must not be negative");
 }
@@ -108,6 +112,8 @@ void GlobalGridConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("resolution_m", resolution_m, "edge of a cell without a saved map [m]");
   visitor.Field("max_side_m", max_side_m, "longest side of the grid [m]");
   visitor.Field("growth_m", growth_m, "by which the grid grows [m]");
+  visitor.Field("cross_unknown", cross_unknown,
+                "without a saved map, plans lead through unseen places too");
 }
 
 void GlobalGridConfig::Validate(ConfigProblems& problems) const {

@@ -1,5 +1,7 @@
 #include "hv_navigation/planning_config.h"
 
+#include <algorithm>
+
 namespace hv::navigation {
 
 void NavigatorConfig::Describe(ConfigVisitor& visitor) {
@@ -52,6 +54,12 @@ void NavigatorConfig::Validate(ConfigProblems& problems) const {
   require(goal_slack_m >= 0.0, "goal_slack_m", "must not be negative");
   require(goal_yaw_slack >= 0.0, "goal_yaw_slack", "must not be negative");
   require(recoveries >= 0, "recoveries", "must not be negative");
+}
+
+double PlanningConfig::NeededClearance() const {
+  constexpr double kStride_m = 0.7;  // checks along paths take steps as long in open space
+  return footprint.CircumscribedRadius() +
+         std::max({global.soft_clearance_m, local.slow_clearance_m, kStride_m});
 }
 
 void PlanningConfig::Describe(ConfigVisitor& visitor) {

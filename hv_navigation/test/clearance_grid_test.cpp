@@ -71,6 +71,30 @@ TEST_P(Clearance, OfAddedObstaclesIsThatOfAll) {
   }
 }
 
+TEST_P(Clearance, OfChangedCellsIsThatOfAll) {
+  constexpr double kLimit_m = 0.8;
+  OccupancyGrid cells = Random(60, 50, 0.01, 0.005, 6);
+  const ClearanceGrid before(cells, GetParam(), kLimit_m);
+  for (const CellBox& box : {CellBox{{20, 10}, {31, 24}}, CellBox{{0, 45}, {3, 49}}}) {
+    OccupancyGrid changed = cells;
+    for (int y = box.low.y(); y <= box.high.y(); ++y) {
+      for (int x = box.low.x(); x <= box.high.x(); ++x) {
+        const bool occupied = (x * 7 + y * 13) % 29 == 0;
+        changed.At(x, y) = occupied ? OccupancyGrid::kOccupied : OccupancyGrid::kFree;
+      }
+    }
+    const ClearanceGrid truth(changed, GetParam(), kLimit_m);
+    const ClearanceGrid grid = before.WithCells(changed, box);
+    EXPECT_EQ(grid.grid().cells, changed.cells);
+    for (int y = 0; y < cells.height; ++y) {
+      for (int x = 0; x < cells.width; ++x) {
+        EXPECT_EQ(grid.ClearanceAt(Eigen::Vector2i(x, y)), truth.ClearanceAt(Eigen::Vector2i(x, y)))
+            << x << " " << y;
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Unknown, Clearance,
                          testing::Values(ClearanceGrid::Unknown::kFree,
                                          ClearanceGrid::Unknown::kOccupied));

@@ -151,5 +151,29 @@ TEST(GlobalGridTest, BadViewsChangeNothing) {
   EXPECT_EQ(global.grid().cells, Room().cells);
 }
 
+TEST(GlobalGridTest, TellsWhatHasChanged) {
+  GlobalGridConfig config;
+  config.mark_views = 1;
+  GlobalGrid global(config, Room());
+  EXPECT_TRUE(global.TakeChanges().everything);
+
+  OccupancyGrid view = Filled(0.05, {3.0, 3.0}, 40, 40, OccupancyGrid::kFree);
+  global.Update(view, {}, {4.0, 4.0});
+  EXPECT_FALSE(global.TakeChanges().cells);
+  view.At(10, 20) = view.At(12, 25) = OccupancyGrid::kOccupied;
+  global.Update(view, {}, {4.0, 4.0});
+  const GlobalGrid::Changes changes = global.TakeChanges();
+  EXPECT_FALSE(changes.everything);
+  ASSERT_TRUE(changes.cells);
+  EXPECT_EQ(changes.cells->low, Eigen::Vector2i(70, 80));
+  EXPECT_EQ(changes.cells->high, Eigen::Vector2i(72, 85));
+  EXPECT_FALSE(global.TakeChanges().cells);
+
+  global.Update(FreeView(), {}, {0.0, 0.0});
+  EXPECT_TRUE(global.TakeChanges().everything) << "grew";
+  global.ForgetViews();
+  EXPECT_TRUE(global.TakeChanges().everything) << "forgot";
+}
+
 }  // namespace
 }  // namespace hv::navigation

@@ -98,7 +98,8 @@ void LocalizerConfig::Validate(ConfigProblems& problems) const {
 
 void LocalizationNodeConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("localization", localization, "localisation in a saved map");
-  for (const char* section : {"input", "points", "odometry", "output", "loop", "map", "mapping"}) {
+  for (const char* section :
+       {"input", "points", "odometry", "output", "loop", "map", "mapping", "navigation"}) {
     visitor.Foreign(section);
   }
 }

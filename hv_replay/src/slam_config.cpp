@@ -8,6 +8,7 @@ void SlamConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("map", map, "what is made of the keyframes when a map is saved");
   visitor.Section("mapping", mapping, "what the loop closing node publishes");
   visitor.Section("localization", localization, "localisation in a saved map");
+  visitor.Section("navigation", navigation, "obstacles and ways");
 }
 
 void SlamConfig::Validate(ConfigProblems& problems) const {
@@ -16,6 +17,7 @@ void SlamConfig::Validate(ConfigProblems& problems) const {
   map.Validate(problems);
   mapping.Validate(problems);
   localization.Validate(problems);
+  navigation.Validate(problems);
 }
 
 }  // namespace hv::replay

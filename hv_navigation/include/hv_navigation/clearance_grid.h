@@ -6,6 +6,12 @@
 
 namespace hv::navigation {
 
+/// Cells of a grid, both corners included.
+struct CellBox {
+  Eigen::Vector2i low;
+  Eigen::Vector2i high;
+};
+
 /// A grid of obstacles with the distance to the nearest one for each cell. Places outside count as
 /// unknown. Immutable; const methods may run concurrently.
 class ClearanceGrid {
@@ -17,6 +23,9 @@ class ClearanceGrid {
 
   /// The same with `cells`, which must lie inside, occupied too.
   ClearanceGrid WithObstacles(const std::vector<Eigen::Vector2i>& cells) const;
+
+  /// The same with other cells: `grid` has the same size and place and differs only in `changed`.
+  ClearanceGrid WithCells(OccupancyGrid grid, const CellBox& changed) const;
 
   const OccupancyGrid& grid() const { return grid_; }
 
@@ -42,12 +51,18 @@ class ClearanceGrid {
 
  private:
   double ClearanceInside(int column, int row) const {
-    return static_cast<double>(
-        clearance_m_[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.width) +
-                     static_cast<std::size_t>(column)]);
+    return static_cast<double>(clearance_m_[IndexOf(column, row)]);
+  }
+  std::size_t IndexOf(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.width) +
+           static_cast<std::size_t>(column);
   }
 
+  int ReachInCells() const;
+  void Measure(const CellBox& box);
+
   OccupancyGrid grid_;
+  Unknown unknown_;
   double cells_per_m_;
   double outside_m_;
   double limit_m_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hv_core/occupancy_grid.h"
+#include "hv_navigation/clearance_grid.h"
 #include "hv_navigation/mapping_config.h"
 #include "hv_navigation/planar.h"
 
@@ -36,6 +37,14 @@ class GlobalGrid {
   void ForgetViews();
 
   const OccupancyGrid& grid() const { return grid_; }
+
+  /// What has changed in the grid since this was last asked.
+  struct Changes {
+    bool everything = false;  ///< it began, grew or forgot; else
+    std::optional<CellBox> cells;
+  };
+  Changes TakeChanges() { return std::exchange(changes_, Changes()); }
+
   std::size_t left_out() const { return left_out_; }  ///< cells beyond the largest grid
 
  private:
@@ -43,13 +52,15 @@ class GlobalGrid {
   std::pair<int, int> GrowthAlong(int axis, double low_m, double high_m) const;
   void GrowToHold(const Eigen::Vector2d& low, const Eigen::Vector2d& high);
   OccupancyGrid Turned(const OccupancyGrid& observed, const PlanarPose& T_map_odom) const;
-  void TakeCell(std::size_t index, bool occupied, bool near);
+  void TakeCell(const Eigen::Vector2i& at, bool occupied, bool near);
+  void NoteChange(const Eigen::Vector2i& at);
 
   GlobalGridConfig config_;
   OccupancyGrid grid_;
   std::vector<std::int8_t> saved_;   ///< of the saved map; unknown elsewhere
   std::vector<std::uint8_t> fixed_;  ///< 1: an obstacle of the saved map that stays
   std::vector<std::int8_t> run_;     ///< views in a row with an obstacle, negative: without
+  Changes changes_;
   std::size_t left_out_ = 0;
 };
 

@@ -34,6 +34,7 @@ struct ObstacleMapConfig {
 
 /// Images of the depth camera.
 struct DepthConfig {
+  bool required = false;            ///< the robot stands until the first image has come
   double min_range_m = 0.25;        ///< along the optical axis
   double max_range_m = 4.0;         ///< along the optical axis
   double speckle_step_m = 0.1;      ///< neighbours nearer in depth belong together
@@ -59,6 +60,7 @@ struct GroundConfig {
 
 /// The 2-D grids of obstacles.
 struct ObstacleGridConfig {
+  double side_m = 30.0;  ///< of the square around the robot
   double robot_height_m = 0.8;
   double height_margin_m = 0.1;  ///< kept free above the robot
 
@@ -75,6 +77,7 @@ struct GlobalGridConfig {
   double resolution_m = 0.1;   ///< without a saved map
   double max_side_m = 2000.0;  ///< the grid does not grow beyond
   double growth_m = 10.0;      ///< by which it grows
+  bool cross_unknown = true;   ///< without a saved map, plans lead through unseen places too
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

@@ -41,6 +41,9 @@ struct PlanningConfig {
   LocalPlannerConfig local;
   NavigatorConfig navigator;
 
+  /// Up to which distances to obstacles grids must tell [m].
+  double NeededClearance() const;
+
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
 };

@@ -5,19 +5,21 @@
 #include "hv_loop_btc/loop_closer.h"
 #include "hv_loop_btc/map_builder.h"
 #include "hv_loop_btc/mapping_config.h"
+#include "hv_navigation/navigation_config.h"
 #include "hv_relocalize_ndt/localizer_config.h"
 
 namespace hv::replay {
 
 /// The whole configuration file: what the odometry node reads (`input`, `points`, `odometry`,
-/// `output`), what the loop closing node reads (`loop`, `map`, `mapping`) and what localisation reads
-/// (`localization`).
+/// `output`), what the loop closing node reads (`loop`, `map`, `mapping`), what localisation reads
+/// (`localization`) and what navigation reads (`navigation`).
 struct SlamConfig {
   lio::SystemConfig system;
   loop::LoopConfig loop;
   loop::MapBuilderConfig map;
   loop::MappingNodeConfig mapping;  ///< of the node alone, kept so that one file serves all
   relocalize::LocalizerConfig localization;
+  navigation::NavigationConfig navigation;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
