@@ -32,7 +32,7 @@ constexpr double kBlockThick_m = 0.3;
 constexpr double kBlockHeight_m = 1.2;
 constexpr double kBlockLeft_m = 5.0;  ///< of the plan
 constexpr double kBlock_s = 60.0;
-constexpr double kWidest_m = 4.5;  ///< of a corridor
+constexpr double kWidest_m = 4.5;    ///< of a corridor
 constexpr double kAlongAxis = 0.14;  ///< rad
 
 std::size_t NearestOn(const Path& plan, const Vector2d& position) {

@@ -64,8 +64,7 @@ std::string TrialHeader() {
 }
 
 std::string TrialRow(const NavigationTrial& trial) {
-  const double turn_deg =
-      180.0 / M_PI * navigation::WrappedAngle(trial.end.yaw - trial.goal.yaw);
+  const double turn_deg = 180.0 / M_PI * navigation::WrappedAngle(trial.end.yaw - trial.goal.yaw);
   char text[640];
   std::snprintf(
       text, sizeof(text),

@@ -57,8 +57,7 @@ BaseMotion SensorLocator::MotionOf(const lio::OdometryEstimate& estimate) const 
   motion.stamp = estimate.stamp;
   motion.T_odom_base = estimate.T_odom_imu * rig_.T_base_imu.inverse();
   const Eigen::Vector3d turn = rig_.T_base_imu.linear() * estimate.angular_velocity_imu;
-  const Eigen::Vector3d of_imu =
-      motion.T_odom_base.linear().transpose() * estimate.velocity_odom;
+  const Eigen::Vector3d of_imu = motion.T_odom_base.linear().transpose() * estimate.velocity_odom;
   motion.velocity.linear_mps = (of_imu - turn.cross(rig_.T_base_imu.translation())).x();
   motion.velocity.angular_rps = turn.z();
   return motion;

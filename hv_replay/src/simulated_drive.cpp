@@ -26,8 +26,7 @@ sim::LiveConfig WithTruth(sim::LiveConfig config) {
 }  // namespace
 
 SimulatedDrive::SimulatedDrive(sim::World world, const sim::LiveConfig& simulation,
-                               const NavigationRunConfig& config,
-                               std::unique_ptr<RobotLocator> locator,
+                               const SlamConfig& config, std::unique_ptr<RobotLocator> locator,
                                std::optional<OccupancyGrid> saved)
     : simulation_(std::move(world), WithTruth(simulation)),
       locator_(std::move(locator)),

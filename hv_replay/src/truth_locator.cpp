@@ -17,8 +17,7 @@ class TruthLocator : public RobotLocator {
   void AddTruth(const sim::TrueState& state) override {
     const sim::MotionState& base = state.base;
     const Eigen::Vector3d velocity = base.T_world_body.linear().transpose() * base.velocity;
-    history_.Add(
-        {state.stamp, base.T_world_body, {velocity.x(), base.angular_velocity.z()}});
+    history_.Add({state.stamp, base.T_world_body, {velocity.x(), base.angular_velocity.z()}});
   }
   void AddScan(Scan scan) override { scans_.push_back(std::move(scan)); }
 

@@ -22,8 +22,7 @@ class GoalSampler {
     double optimal_m = 0.0;
   };
 
-  GoalSampler(const OccupancyGrid& map, const navigation::Footprint& footprint,
-              std::uint32_t seed);
+  GoalSampler(const OccupancyGrid& map, const navigation::Footprint& footprint, std::uint32_t seed);
 
   /// At any heading, at least `least_m` from `start`, where the robot can turn on the spot, and
   /// connected with the start by places like that; nullopt when there is none.

@@ -16,9 +16,9 @@ struct NavigationTrial {
   int number = 0;
   navigation::PlanarPose start;  ///< the true one
   navigation::PlanarPose goal;
-  double optimal_m = 0.0;  ///< see GoalSampler
-  bool reached = false;    ///< by its own account, and truly within 0.5 m
-  std::string reason;      ///< why not, one line
+  double optimal_m = 0.0;      ///< see GoalSampler
+  bool reached = false;        ///< by its own account, and truly within 0.5 m
+  std::string reason;          ///< why not, one line
   navigation::PlanarPose end;  ///< the true one
   double driven_m = 0.0;       ///< truly
   double time_s = 0.0;
@@ -33,9 +33,9 @@ struct NavigationTrial {
   std::size_t octree_nodes = 0;    ///< at most
   double worst_place_m = 0.0;      ///< greatest error of its own place
 
-  bool boxed = false;         ///< the scenario has put its box
-  double response_s = -1.0;   ///< from the box to what follows; -1: nothing
-  std::string response;       ///< "new plan", or the reason told
+  bool boxed = false;        ///< the scenario has put its box
+  double response_s = -1.0;  ///< from the box to what follows; -1: nothing
+  std::string response;      ///< "new plan", or the reason told
 
   std::vector<Eigen::Vector2d> line;      ///< driven, truly
   std::vector<Eigen::Vector2d> contacts;  ///< where it collided

@@ -50,8 +50,8 @@ class RobotLocator {
   virtual std::optional<RobotPlace> At(Time stamp) const = 0;
 };
 
-/// By odometry and, with a `map`, localisation in it, as the nodes do it; without one the map is the
-/// frame of odometry. Throws InputError when the map cannot be read.
+/// By odometry and, with a `map`, localisation in it, as the nodes do it; without one the map is
+/// the frame of odometry. Throws InputError when the map cannot be read.
 std::unique_ptr<RobotLocator> LocateBySensors(const SlamConfig& config, const std::string& map,
                                               const sim::SensorRig& rig);
 

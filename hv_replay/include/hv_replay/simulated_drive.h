@@ -9,8 +9,8 @@
 #include "hv_core/occupancy_grid.h"
 #include "hv_navigation/navigator.h"
 #include "hv_navigation/surroundings.h"
-#include "hv_replay/navigation_config.h"
 #include "hv_replay/robot_locator.h"
+#include "hv_replay/slam_config.h"
 #include "hv_sim/live_simulation.h"
 
 namespace hv::replay {
@@ -22,10 +22,10 @@ struct DriveCycle {
   std::optional<RobotPlace> place;
   Pose T_world_base = Pose::Identity();  ///< the truth
   std::vector<sim::Collision> collisions;
-  std::vector<double> update_ms;     ///< of the obstacle map, a value a scan
-  std::vector<double> depth_ms;      ///< the same, a value a depth image
-  double grids_ms = 0.0;             ///< for the 2-D grids
-  double control_ms = 0.0;           ///< for the navigator without plans
+  std::vector<double> update_ms;  ///< of the obstacle map, a value a scan
+  std::vector<double> depth_ms;   ///< the same, a value a depth image
+  double grids_ms = 0.0;          ///< for the 2-D grids
+  double control_ms = 0.0;        ///< for the navigator without plans
   std::size_t octree_nodes = 0;
   bool moved_on = true;  ///< odometry was not interrupted
 };
@@ -37,9 +37,8 @@ class SimulatedDrive {
   static constexpr double kPeriod_s = 0.1;  ///< of control
 
   /// `saved`: the grid of the prior map. Throws InputError like LiveSimulation.
-  SimulatedDrive(sim::World world, const sim::LiveConfig& simulation,
-                 const NavigationRunConfig& config, std::unique_ptr<RobotLocator> locator,
-                 std::optional<OccupancyGrid> saved);
+  SimulatedDrive(sim::World world, const sim::LiveConfig& simulation, const SlamConfig& config,
+                 std::unique_ptr<RobotLocator> locator, std::optional<OccupancyGrid> saved);
 
   /// In the map; takes the place of a goal under way.
   void SetGoal(const navigation::PlanarPose& goal) { navigator_.SetGoal(goal); }
