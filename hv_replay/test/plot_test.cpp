@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "hv_core/error.h"
+#include "hv_replay/drive_picture.h"
 #include "hv_replay/map_picture.h"
 #include "plot/axes.h"
 
@@ -111,6 +112,34 @@ TEST_F(PlotFile, DegenerateInputIsDrawnToo) {
   options.alignment = Alignment::kNone;
   PlotError(CompareTrajectories(still, still, options), "", path_);
   EXPECT_FALSE(cv::imread(path_).empty());
+}
+
+/// Pixels that are more red than anything else.
+int RedPixels(const cv::Mat& image) {
+  int red = 0;
+  for (int row = 0; row < image.rows; ++row) {
+    for (int column = 0; column < image.cols; ++column) {
+      const cv::Vec3b pixel = image.at<cv::Vec3b>(row, column);
+      red += pixel[2] > 180 && pixel[0] < 80 && pixel[1] < 80 ? 1 : 0;
+    }
+  }
+  return red;
+}
+
+TEST_F(PlotFile, DrivesThatFailedAreRed) {
+  OccupancyGrid map;
+  map.width = 60;
+  map.height = 40;
+  map.cells.assign(60 * 40, OccupancyGrid::kFree);
+  DrivenLine line;
+  for (int k = 0; k < 50; ++k) line.points.emplace_back(0.5 + 0.1 * k, 2.0);
+  line.goal = line.points.back();
+  DrawDrives(map, {line}, "test", path_);
+  const int legend = RedPixels(cv::imread(path_));
+  line.failed = true;
+  DrawDrives(map, {line}, "test", path_);
+  EXPECT_GT(RedPixels(cv::imread(path_)), legend + 1000);
+  EXPECT_THROW(DrawDrives(OccupancyGrid(), {line}, "test", path_), InputError);
 }
 
 TEST_F(PlotFile, NothingToDrawAndBadPathsAreErrors) {
