@@ -45,7 +45,7 @@ double GoalSampler::OptimalLength(const Vector2i& start, const Vector2i& goal) c
     return map_.ClearanceAt(cell) >= inscribed_m_ ? 1.0 : 0.0;
   };
   search.Run(start, goal, fits);
-  return RouteLength(search.RouteTo(goal), map_.grid().resolution_m);
+  return navigation::RouteLength(search.RouteTo(goal), map_.grid().resolution_m);
 }
 
 std::optional<GoalSampler::Goal> GoalSampler::Next(const navigation::PlanarPose& start,
