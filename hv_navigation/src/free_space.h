@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "hv_navigation/clearance_grid.h"
 #include "hv_navigation/footprint.h"
 #include "hv_navigation/planar.h"
@@ -38,13 +40,18 @@ class FreeSpace {
 
   bool IsFree(const PlanarPose& pose) const;
   /// However it stands.
-  bool IsFreeToTurn(const Eigen::Vector2d& position) const { return Roaming(position) > 0.0; }
+  bool IsFreeToTurn(const Eigen::Vector2d& position) const {
+    return TurnIsFree({position, 0.0}, 2.0 * M_PI);
+  }
   bool TurnIsFree(const PlanarPose& from, double turn) const;
   bool DriveIsFree(const PlanarPose& from, double length_m) const;
   bool MotionIsFree(const PlanarPose& from, const PlanarPose& to) const;
 
   /// The smallest distance to obstacles that the middle of the robot must keep at `position` [m].
   double NeededClearance(const Eigen::Vector2d& position) const;
+
+  /// The distance at which the robot fits however it stands [m].
+  double circumscribed_m() const { return circumscribed_m_; }
 
   /// What a metre costs above 1 at this clearance.
   double Nearness(double clearance_m) const;

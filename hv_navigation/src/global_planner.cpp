@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kBand_m = 1.5;  // about the shortest route, for the one with room
 constexpr double kGuideSpacing_m = 0.5;
+constexpr double kEnd_m = 1.0;        // about start and goal, where there may be no room to turn
 constexpr double kLookAhead_m = 1.0;  // over which the route's direction is taken
 
 using Cells = std::vector<Eigen::Vector2i>;
@@ -197,6 +198,22 @@ class Planning {
     return search_.Run(shortest_.front(), goal, factor) ? search_.RouteTo(goal) : shortest_;
   }
 
+  /// The shortest route with room to turn everywhere but about the start and the goal; empty when
+  /// there is none.
+  Cells RouteToTurn() {
+    const Eigen::Vector2i goal = grid_.CellOf(plan_.goal.position);
+    const auto is_end = [this](const Eigen::Vector2i& cell) {
+      const Eigen::Vector2d at = grid_.CenterOf(cell);
+      return (at - request_.start.position).norm() < kEnd_m ||
+             (at - plan_.goal.position).norm() < kEnd_m;
+    };
+    const auto factor = [&](const Eigen::Vector2i& cell) {
+      if (grid_.ClearanceAt(cell) >= space_.circumscribed_m() || cell == goal) return 1.0;
+      return is_end(cell) ? InscribedFactor(cell) : 0.0;
+    };
+    return search_.Run(shortest_.front(), goal, factor) ? search_.RouteTo(goal) : Cells();
+  }
+
   /// Poses along a route, from the start to the goal.
   std::vector<PlanarPose> GuideAlong(const Cells& route) const {
     const double cell_m = grid_.grid().resolution_m;
@@ -225,6 +242,7 @@ class Planning {
     FreeSpace space = space_;
     space.SetCost({weight, config_.soft_clearance_m});
     PoseChain chain = SearchTree(space, GuideAlong(RoomyRoute(space)), config_);
+    if (chain.poses.empty()) chain = PlanWithRoom(space);
     if (chain.poses.empty()) chain = PlanByLattice(space);
     if (chain.poses.empty()) {
       Fail(PlanOutcome::kTooNarrow, "the way to the goal is too narrow for the robot to turn");
@@ -236,6 +254,12 @@ class Planning {
     plan_.length_m = Length(plan_.path);
     plan_.cost = chain.cost;
     Fail(PlanOutcome::kFound, "");
+  }
+
+  /// The shortest way may lead where the robot fits through but cannot turn; another may not.
+  PoseChain PlanWithRoom(const FreeSpace& space) {
+    const Cells route = RouteToTurn();
+    return route.empty() ? PoseChain() : SearchTree(space, GuideAlong(route), config_);
   }
 
   PoseChain PlanByLattice(const FreeSpace& space) const {

@@ -268,5 +268,42 @@ TEST(GlobalPlannerTest, TurnsWhereItFitsOnly) {
             PlanOutcome::kTooNarrow);
 }
 
+TEST(GlobalPlannerTest, GoesAroundWhereTheShortestWayIsTooNarrowToTurn) {
+  OccupancyGrid cells = EmptyCells(100, 100, 0.1);
+  FenceCells(cells);
+  // An alley of 0.7 m between two walls: a circle gets through, the robot cannot turn in it.
+  FillCells(cells, {4.0, 0.0}, {4.1, 10.0});
+  FillCells(cells, {4.8, 0.0}, {4.9, 10.0});
+  FillCells(cells, {4.0, 2.0}, {4.1, 2.7}, OccupancyGrid::kFree);
+  FillCells(cells, {4.8, 3.0}, {4.9, 3.7}, OccupancyGrid::kFree);
+  PlanRequest request;
+  request.start = {{2.0, 2.4}, 0.0};
+  request.goal = {{7.0, 3.4}, 0.0};
+  const GlobalPlanner planner({}, Footprint());
+  EXPECT_EQ(planner.Plan(Clearances(cells), request).outcome, PlanOutcome::kTooNarrow);
+  FillCells(cells, {4.0, 7.0}, {4.9, 8.5}, OccupancyGrid::kFree);
+  const ClearanceGrid grid = Clearances(cells);
+  const GlobalPlan plan = planner.Plan(grid, request);
+  ASSERT_TRUE(plan.Found()) << plan.reason;
+  ExpectDrivable(plan.path, grid, Footprint());
+  EXPECT_GT(plan.length_m, 11.0);
+}
+
+TEST(GlobalPlannerTest, MovesAGoalToWhereTheRobotCanJustTurn) {
+  // A blind alley, 1.1 m wide: the robot can turn in its middle only.
+  OccupancyGrid cells = EmptyCells(60, 13, 0.1);
+  FenceCells(cells);
+  const ClearanceGrid grid = Clearances(cells);
+  PlanRequest request;
+  request.start = {{1.0, 0.65}, 0.0};
+  request.goal = {{5.3, 0.75}, M_PI - 0.5};
+  request.goal_tolerance_m = 0.3;
+  request.yaw_tolerance = 0.1;
+  const GlobalPlan plan = GlobalPlanner({}, Footprint()).Plan(grid, request);
+  ASSERT_TRUE(plan.Found()) << plan.reason;
+  ExpectDrivable(plan.path, grid, Footprint());
+  EXPECT_LT((plan.goal.position - request.goal.position).norm(), 0.3);
+}
+
 }  // namespace
 }  // namespace hv::navigation
