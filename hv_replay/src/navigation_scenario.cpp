@@ -21,7 +21,7 @@ constexpr double kStraight = 0.15;  ///< rad, to what lies ahead
 
 // The lowest ray, 16 deg down from 0.6 m above the floor and 0.12 m before the base, is 0.15 m high
 // at 1.69 m. A box whose far corner is nearer is under it.
-constexpr double kLowAhead_m = 1.45;
+constexpr double kLowAhead_m = 1.35;  ///< up to a step of the path more
 constexpr double kLowSide_m = 0.3;
 constexpr double kLowHeight_m = 0.15;
 constexpr double kLowRoom_m = 1.15;  ///< about its middle: 1 m on both sides

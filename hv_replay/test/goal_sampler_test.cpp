@@ -8,13 +8,18 @@ namespace {
 using navigation::Footprint;
 using navigation::PlanarPose;
 
-/// Two rooms of 8 x 6 m beside each other with a wall between them, cells of 0.1 m.
+/// Two rooms of 8 x 6 m beside each other with walls between and around them, cells of 0.1 m.
 OccupancyGrid TwoRooms() {
   OccupancyGrid grid;
   grid.width = 160;
   grid.height = 60;
   grid.cells.assign(160 * 60, OccupancyGrid::kFree);
-  for (int row = 0; row < 60; ++row) grid.At(80, row) = OccupancyGrid::kOccupied;
+  for (int row = 0; row < 60; ++row) {
+    for (const int column : {0, 80, 159}) grid.At(column, row) = OccupancyGrid::kOccupied;
+  }
+  for (int column = 0; column < 160; ++column) {
+    for (const int row : {0, 59}) grid.At(column, row) = OccupancyGrid::kOccupied;
+  }
   return grid;
 }
 
@@ -52,7 +57,7 @@ TEST(GoalSamplerTest, ThereMayBeNone) {
 TEST(GoalSamplerTest, LengthGoesAroundAndThroughWhatIsJustWideEnough) {
   OccupancyGrid grid = TwoRooms();
   for (int row = 40; row < 47; ++row) grid.At(80, row) = OccupancyGrid::kFree;
-  for (int row = 0; row < 20; ++row) grid.At(80, row) = OccupancyGrid::kFree;
+  for (int row = 1; row < 20; ++row) grid.At(80, row) = OccupancyGrid::kFree;
   GoalSampler sampler(grid, Footprint(), 1);
   const PlanarPose start{{7.0, 4.3}, 0.0};
   int beyond = 0;
