@@ -25,6 +25,11 @@ PERIOD_S = 0.1
 STOP_S = 2.0  # silence until it is noticed (0.5 s), and braking from full speed
 
 
+def wait_long(condition):
+    """As wait_until(), for a drive."""
+    return any(wait_until(condition) for _ in range(3))
+
+
 def pose_of(message):
     """x, y, yaw."""
     p = message.position
@@ -32,7 +37,14 @@ def pose_of(message):
     return (p.x, p.y, 2.0 * math.atan2(q.z, q.w))
 
 
-def goal_at(x, y, yaw=0.0, frame="map"):
+def seen_from(start, pose):
+    """Ahead and to the left of a start [m]."""
+    x, y = pose[0] - start[0], pose[1] - start[1]
+    cos, sin = math.cos(start[2]), math.sin(start[2])
+    return (x * cos + y * sin, y * cos - x * sin)
+
+
+def goal_in(frame, x, y, yaw=0.0):
     goal = MoveBaseGoal()
     goal.target_pose.header.frame_id = frame
     goal.target_pose.pose.position.x = x
@@ -62,7 +74,10 @@ class Navigation(unittest.TestCase):
         assert cls.client.wait_for_server(rospy.Duration(30.0))
         assert wait_until(lambda: len(cls.local_grids) > 2 and len(cls.truth) > 0 and
                           cls.transforms.can_transform("map", "base_link", rospy.Time(0)))
-        cls.start = cls.truth.messages[-1].pose.pose
+        cls.start = pose_of(cls.truth.messages[-1].pose.pose)
+        transform = cls.transforms.lookup_transform("map", "base_link", rospy.Time(0)).transform
+        cls.start_in_map = (transform.translation.x, transform.translation.y,
+                            2.0 * math.atan2(transform.rotation.z, transform.rotation.w))
         cls.commands_before = len(cls.commands)
         cls.subscriber = rospy.Subscriber(
             "/cmd_vel", Twist, lambda _: cls.command_times.append(rospy.Time.now().to_sec()))
@@ -75,11 +90,14 @@ class Navigation(unittest.TestCase):
     @classmethod
     def here(cls):
         """Where the robot truly is, from where it started."""
-        x0, y0, yaw0 = pose_of(cls.start)
-        x, y, _ = pose_of(cls.truth.messages[-1].pose.pose)
-        ahead = (x - x0) * math.cos(yaw0) + (y - y0) * math.sin(yaw0)
-        left = (y - y0) * math.cos(yaw0) - (x - x0) * math.sin(yaw0)
-        return ahead, left
+        return seen_from(cls.start, pose_of(cls.truth.messages[-1].pose.pose))
+
+    @classmethod
+    def goal_at(cls, ahead, left):
+        """From where the robot started, in the map."""
+        x, y, yaw = cls.start_in_map
+        return goal_in("map", x + ahead * math.cos(yaw) - left * math.sin(yaw),
+                       y + ahead * math.sin(yaw) + left * math.cos(yaw), yaw)
 
     @classmethod
     def speed(cls):
@@ -104,8 +122,8 @@ class Navigation(unittest.TestCase):
     @classmethod
     def drive_to_a_goal(cls):
         begun = cls.seconds()
-        results = cls.send(goal_at(8.0, 0.0))
-        assert wait_until(lambda: results)
+        results = cls.send(cls.goal_at(8.0, 0.0))
+        assert wait_long(lambda: results)
         cls.reached = results[0]
         cls.reached_feedback = list(cls.feedback)
         cls.reached_in_s = cls.seconds() - begun
@@ -119,21 +137,19 @@ class Navigation(unittest.TestCase):
 
     @classmethod
     def take_another_goal_on_the_way(cls):
-        other = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-        assert other.wait_for_server(rospy.Duration(30.0))
-        cls.send(goal_at(1.0, 0.0))
+        cls.send(cls.goal_at(1.0, 0.0))
         assert cls.get_going()
         # By the topic of rviz: a goal of somebody else.
         publisher = rospy.Publisher("/move_base_simple/goal", PoseStamped, queue_size=1)
         assert wait_until(lambda: publisher.get_num_connections() > 0)
-        publisher.publish(goal_at(5.0, 0.2).target_pose)
+        publisher.publish(cls.goal_at(5.0, 0.2).target_pose)
         assert wait_until(lambda: cls.client.get_state() == GoalStatus.PREEMPTED)
-        assert wait_until(lambda: cls.diagnostics.count("goals reached", "navigation") == 2)
+        assert wait_long(lambda: cls.diagnostics.count("goals reached", "navigation") == 2)
         cls.second_at = cls.here()
 
     @classmethod
     def lose_the_sensors_on_the_way(cls):
-        results = cls.send(goal_at(-3.0, 0.0))
+        results = cls.send(cls.goal_at(-3.0, 0.0))
         assert cls.get_going()
         pause = rospy.ServiceProxy("/hv_lio/pause", SetBool)
         pause(True)
@@ -159,7 +175,7 @@ class Navigation(unittest.TestCase):
     @classmethod
     def ask_for_nonsense(cls):
         cls.nonsense = []
-        for goal in (goal_at(math.nan, 0.0), goal_at(1.0, 0.0, frame="nowhere"), MoveBaseGoal()):
+        for goal in (goal_in("map", math.nan, 0.0), goal_in("nowhere", 1.0, 0.0), MoveBaseGoal()):
             results = cls.send(goal)
             assert wait_until(lambda: results)
             cls.nonsense.append(results[0])
@@ -173,8 +189,8 @@ class Navigation(unittest.TestCase):
         feedback = [message.base_position for message in self.reached_feedback]
         self.assertEqual({message.header.frame_id for message in feedback}, {"map"})
         self.assertGreater(len(feedback), 0.9 * self.reached_in_s / PERIOD_S)
-        last = feedback[-1].pose.position
-        self.assertLess(math.dist((last.x, last.y), (8.0, 0.0)), TOLERANCE_M)
+        last = seen_from(self.start_in_map, pose_of(feedback[-1].pose))
+        self.assertLess(math.dist(last, (8.0, 0.0)), TOLERANCE_M)
 
     def test_runs_into_nobody(self):
         kinds = {message.data for message in self.collisions.messages}
