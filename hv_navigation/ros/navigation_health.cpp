@@ -1,5 +1,8 @@
 #include "navigation_health.h"
 
+#include <iomanip>
+#include <sstream>
+
 #include "hv_core/memory.h"
 
 namespace hv::navigation {
@@ -12,6 +15,13 @@ constexpr double kSlow_ms = 80.0;
 std::string WithReason(const ControlState& control) {
   const std::string state = ToString(control.state);
   return control.reason.empty() ? state : state + ": " + control.reason;
+}
+
+std::string AgeText(double age_s) {
+  constexpr double kNever_s = 1e8;
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(3) << age_s;
+  return age_s < kNever_s ? text.str() : "none yet";
 }
 
 void Summarize(const ControlState& control, NavigationHealth::Status& status) {
@@ -62,8 +72,8 @@ void NavigationHealth::DescribeNavigation(Status& status) {
   status.addf("way left [m]", "%.2f", control.remaining_m);
   status.add("recoveries since it got on", control.recoveries);
   status.add("place in the map known", control.localized);
-  status.addf("age of the pose [s]", "%.3f", control.pose_age_s);
-  status.addf("age of the obstacles [s]", "%.3f", control.obstacles_age_s);
+  status.add("age of the pose [s]", AgeText(control.pose_age_s));
+  status.add("age of the obstacles [s]", AgeText(control.obstacles_age_s));
   status.add("cycles", control.cycles);
   status.add("cycles missed", control.missed);
   status.addf("last cycle [ms]", "%.2f", control.cycle_ms);
