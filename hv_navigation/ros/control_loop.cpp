@@ -151,11 +151,12 @@ void ControlLoop::Act(const NavigationInput& input, const NavigationOutput& outp
   if (input.localized) goals_.PublishFeedback(pose_.T_map_base, pose_.stamp);
   publisher_.PublishPicture(output, pose_);
   if (!output.result) return;
-  const std::string why = output.reason.empty() ? "" : ": " + output.reason;
-  ROS_INFO_STREAM("goal ended, " << ToString(*output.result) << why);
+  std::string how = ToString(*output.result);
+  if (!output.reason.empty() && output.reason != how) how += ": " + output.reason;
+  ROS_INFO_STREAM("goal ended, " << how);
   goals_.Finish(*output.result, output.reason);
   const std::lock_guard<std::mutex> lock(mutex_);
-  state_.last_result = ToString(*output.result) + why;
+  state_.last_result = how;
   if (*output.result == NavigationResult::kReached) ++state_.reached;
 }
 
