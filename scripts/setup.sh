@@ -10,13 +10,13 @@ build=$(realpath -m "${HV_BUILD_DIR:-$root/build}")
 packages=(
   ca-certificates catkin ccache cmake g++ make ninja-build pkg-config pluginlib-dev
   libactionlib-dev libbenchmark-dev libceres-dev libcli11-dev libdiagnostic-updater-dev libeigen3-dev libembree-dev libgtest-dev
-  liblzf-dev libnav-msgs-dev libnodelet-dev libnodeletlib-dev libnodeletlib-tools liboctomap-dev libompl-dev libopencv-dev libpcl-dev librosbag-dev
+  liblzf-dev libmove-base-msgs-dev libnav-msgs-dev libnodelet-dev libnodeletlib-dev libnodeletlib-tools liboctomap-dev libompl-dev libopencv-dev libpcl-dev librosbag-dev
   libroscpp-dev librostest-dev libsensor-msgs-dev libssl-dev libstd-srvs-dev libtbb-dev libtf2-eigen-dev
   libtf2-geometry-msgs-dev libtf2-ros-dev libvisualization-msgs-dev libyaml-cpp-dev
-  python3-actionlib-msgs python3-diagnostic-msgs python3-geometry-msgs python3-nav-msgs python3-numpy python3-rosbag
+  python3-actionlib python3-actionlib-msgs python3-diagnostic-msgs python3-geometry-msgs python3-move-base-msgs python3-nav-msgs python3-numpy python3-rosbag
   python3-roslaunch python3-rosmsg python3-rosnode python3-rosservice python3-rostest
   python3-rostopic python3-sensor-msgs python3-std-srvs python3-tf2-msgs python3-visualization-msgs
-  ros-actionlib-msgs ros-geometry-msgs ros-message-generation ros-message-runtime ros-nav-msgs ros-sensor-msgs
+  ros-actionlib-msgs ros-geometry-msgs ros-message-generation ros-message-runtime ros-move-base-msgs ros-nav-msgs ros-sensor-msgs
   robin-map-dev ros-std-msgs rosbash)
 
 fail() {

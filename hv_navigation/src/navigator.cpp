@@ -19,7 +19,9 @@ bool Within(const std::optional<Time>& since, Time now, double duration_s) {
   return since && now - *since < duration_s;
 }
 
-const char* MissingInput(const NavigationInput& input, const NavigatorConfig& config) {
+}  // namespace
+
+std::string MissingInput(const NavigationInput& input, const NavigatorConfig& config) {
   if (!input.map) return "no map yet";
   if (!input.local_grid) return "no obstacle grid yet";
   if (!input.localized) return "the place in the map is lost";
@@ -27,10 +29,8 @@ const char* MissingInput(const NavigationInput& input, const NavigatorConfig& co
   if (input.now - input.obstacles_stamp > config.obstacles_timeout_s) {
     return "the obstacle sensors are silent";
   }
-  return nullptr;
+  return "";
 }
-
-}  // namespace
 
 const char* ToString(NavigationState state) {
   switch (state) {
@@ -124,8 +124,8 @@ NavigationOutput Navigator::Update(const NavigationInput& input) {
 
 /// Without inputs it stands, and goes on when they are back.
 bool Navigator::CheckInputs(const NavigationInput& input, NavigationOutput& output) {
-  const char* missing = MissingInput(input, config_.navigator);
-  if (missing == nullptr) {
+  const std::string missing = MissingInput(input, config_.navigator);
+  if (missing.empty()) {
     // The time spent waiting is no fault of the way.
     if (inputs_lost_since_) pursuit_->progress = input.now;
     inputs_lost_since_.reset();

@@ -78,7 +78,7 @@ TEST_F(SurroundingsTest, WallsAreInBothGrids) {
   for (const auto& grid : {view.local, view.map}) {
     EXPECT_TRUE(grid->OccupiedAt(Vector2d(4.05, 0.0)));
     EXPECT_NEAR(grid->ClearanceAt(Vector2d(3.45, 0.0)), 0.5, 0.11);
-    EXPECT_EQ(grid->ClearanceAt(Vector2d(0.0, 0.0)), clearance_m_);
+    EXPECT_NEAR(grid->ClearanceAt(Vector2d(0.0, 0.0)), clearance_m_, 1e-6);
   }
   EXPECT_EQ(view.obstacles_stamp, At(0.1));
 }

@@ -55,6 +55,10 @@ struct NavigationOutput {
 const char* ToString(NavigationState state);
 const char* ToString(NavigationResult result);
 
+/// The first of the inputs that are missing or too old to drive with, in one line; empty when all
+/// are there.
+std::string MissingInput(const NavigationInput& input, const NavigatorConfig& config);
+
 class Recovery;
 
 /// From goal to result: plans, follows, minds what appears, recovers, and gives up with a reason.
