@@ -35,6 +35,7 @@ struct GlobalLocalizer::Scan {
         surfaces(map.resolution_m(), query.points),
         up(UpOf(query, surfaces)),
         R_level_scan(UprightRotation(up)),
+        structure(StructureCells(surfaces, R_level_scan)),
         judge(config.score, map, surfaces, query.points, up) {}
 
   static Eigen::Vector3d UpOf(const LocalizationQuery& query, const NdtLevel& surfaces) {
@@ -49,6 +50,7 @@ struct GlobalLocalizer::Scan {
   NdtLevel surfaces;
   Eigen::Vector3d up;
   Eigen::Matrix3d R_level_scan;
+  std::vector<StructureCell> structure;
   PlaceJudge judge;
 };
 
@@ -82,9 +84,7 @@ std::vector<LocalizationCandidate> GlobalLocalizer::Propose(const LocalizationQu
     candidates = ProposeByDescriptors(scan);
   }
   const PoseSearch search(config_.search, map_.structure());
-  const std::vector<PoseHypothesis> hypotheses =
-      search.Find(StructureCells(scan.surfaces, scan.R_level_scan), window);
-  for (const PoseHypothesis& hypothesis : hypotheses) {
+  for (const PoseHypothesis& hypothesis : search.Find(scan.structure, window)) {
     Pose T_map_scan = hypothesis.T_map_level;
     T_map_scan.linear() = T_map_scan.linear() * scan.R_level_scan;
     candidates.push_back({T_map_scan, "search", {}});
@@ -166,7 +166,10 @@ LocalizationResult GlobalLocalizer::Locate(const LocalizationQuery& query) const
     if (!known) result.candidates.push_back(candidate);
   }
   if (result.candidates.empty()) {
-    result.reason = "the scan has no structure to compare";
+    const bool flat = std::all_of(scan.structure.begin(), scan.structure.end(),
+                                  [](const StructureCell& cell) { return cell.level; });
+    result.reason =
+        flat ? "the scan has no structure to compare" : "nothing in the map resembles the scan";
     return result;
   }
   Measure(scan, result);

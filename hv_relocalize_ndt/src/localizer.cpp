@@ -20,9 +20,12 @@ std::vector<Eigen::Vector3f> SeenFromLidar(const TrackedScan& scan) {
   return points;
 }
 
-Pose Shift(const Eigen::Vector3d& translation) {
-  return MakePose(Eigen::Matrix3d::Identity(), translation);
+/// Of that frame in the frame of the IMU.
+Pose ImuFromLidar(const TrackedScan& scan) {
+  return MakePose(Eigen::Matrix3d::Identity(), scan.lidar_in_imu);
 }
+
+Pose LidarInOdom(const TrackedScan& scan) { return scan.T_odom_imu * ImuFromLidar(scan); }
 
 }  // namespace
 
@@ -43,18 +46,20 @@ Localizer::Localizer(const LocalizerConfig& config, const PriorMap& map)
       map_(map),
       global_(config.relocalize, map),
       registration_(config.relocalize.ndt),
-      filter_(config.tracking) {}
+      filter_(config.tracking),
+      recent_(config.submap) {}
 
 LocalizerUpdate Localizer::Add(const TrackedScan& scan) {
   update_ = LocalizerUpdate();
   Follow(scan);
   const TrackingConfig& tracking = config_.tracking;
-  if (guess_ || (state_ == LocalizerState::kLost && Due(scan.stamp, tracking.search_period_s))) {
+  const bool lost = state_ == LocalizerState::kLost;
+  if (guess_ || (lost && Due(scan.stamp, tracking.search_period_s))) {
     Search(scan);
-  } else if (state_ != LocalizerState::kLost &&
-             (contradictions_ > 0 || Due(scan.stamp, tracking.period_s))) {
+  } else if (!lost && (contradictions_ > 0 || Due(scan.stamp, tracking.period_s))) {
     Register(scan);
   }
+  if (state_ == LocalizerState::kLost) recent_.Add(SeenFromLidar(scan), LidarInOdom(scan));
   return Taken();
 }
 
@@ -85,14 +90,14 @@ bool Localizer::Due(Time stamp, double period_s) const {
 void Localizer::Follow(const TrackedScan& scan) {
   const double elapsed_s = last_scan_ ? scan.stamp - *last_scan_ : 0.0;
   const bool connected = last_scan_ && scan.segment == segment_;
-  if (state_ != LocalizerState::kLost) {
-    if (!connected) {
-      Lose("odometry started anew");
-    } else if (elapsed_s > config_.tracking.silence_s || elapsed_s < 0.0) {
-      Lose("no scan for a while");
-    } else {
-      filter_.Predict(scan.T_odom_imu, elapsed_s);
+  const bool silent = elapsed_s > config_.tracking.silence_s || elapsed_s < 0.0;
+  if (!connected || silent) {
+    recent_.Clear();
+    if (state_ != LocalizerState::kLost) {
+      Lose(connected ? "no scan for a while" : "odometry started anew");
     }
+  } else if (state_ != LocalizerState::kLost) {
+    filter_.Predict(scan.T_odom_imu, elapsed_s);
   }
   last_scan_ = scan.stamp;
   segment_ = scan.segment;
@@ -103,19 +108,32 @@ void Localizer::Lose(std::string reason) {
   reason_ = std::move(reason);
   contradictions_ = 0;
   last_comparison_.reset();
+  recent_.Clear();
+  together_ = false;
 }
 
-/// Looks for the place of the scan: near the guess, or anywhere.
-void Localizer::Search(const TrackedScan& scan) {
+/// What to look for: the scan near the guess, or anywhere; in turns alone, which is soon done and
+/// minds no odometry, and together with what was seen on the way.
+LocalizationQuery Localizer::QueryOf(const TrackedScan& scan) {
   LocalizationQuery query;
   query.points = SeenFromLidar(scan);
   query.up = scan.T_odom_imu.linear().row(2);
-  const Pose T_imu_scan = Shift(scan.lidar_in_imu);
   if (guess_) {
     query.guess = *guess_;
-    query.guess->T_map_scan = guess_->T_map_scan * T_imu_scan;
+    query.guess->T_map_scan = guess_->T_map_scan * ImuFromLidar(scan);
+    return query;
   }
-  const LocalizationResult found = global_.Locate(query);
+  const Pose T_odom_lidar = LidarInOdom(scan);
+  if (together_ && recent_.Extends(T_odom_lidar)) {
+    query.points = recent_.Join(query.points, T_odom_lidar);
+  }
+  together_ = !together_;
+  return query;
+}
+
+/// Looks for the place of the scan.
+void Localizer::Search(const TrackedScan& scan) {
+  const LocalizationResult found = global_.Locate(QueryOf(scan));
   guess_.reset();
   last_comparison_ = scan.stamp;
   update_.registered = update_.searched = true;
@@ -128,6 +146,7 @@ void Localizer::Search(const TrackedScan& scan) {
     if (state_ == LocalizerState::kLost) reason_ = found.reason;
     return;
   }
+  const Pose T_imu_scan = ImuFromLidar(scan);
   const Matrix6d transport = se3::Adjoint(T_imu_scan);
   filter_.Start(scan.T_odom_imu, found.T_map_scan * T_imu_scan.inverse(),
                 transport * found.covariance * transport.transpose());
@@ -139,7 +158,7 @@ void Localizer::Search(const TrackedScan& scan) {
 /// Compares the scan with the map where the robot is believed to be.
 void Localizer::Register(const TrackedScan& scan) {
   last_comparison_ = scan.stamp;
-  const Pose T_imu_scan = Shift(scan.lidar_in_imu);
+  const Pose T_imu_scan = ImuFromLidar(scan);
   const std::vector<Eigen::Vector3f> points = SeenFromLidar(scan);
   const NdtLevel surfaces(map_.surfaces().resolution_m(), points);
   const PlaceJudge judge(config_.relocalize.score, map_.surfaces(), surfaces, points,

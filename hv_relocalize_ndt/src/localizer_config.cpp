@@ -87,12 +87,14 @@ void LocalizationOutputConfig::Validate(ConfigProblems& problems) const {
 void LocalizerConfig::Describe(ConfigVisitor& visitor) {
   relocalize.Describe(visitor);
   visitor.Section("tracking", tracking, "the pose in the map while the robot moves");
+  visitor.Section("submap", submap, "scans that are looked for together while the place is lost");
   visitor.Section("output", output, "what the localisation node publishes");
 }
 
 void LocalizerConfig::Validate(ConfigProblems& problems) const {
   relocalize.Validate(problems);
   tracking.Validate(problems);
+  submap.Validate(problems);
   output.Validate(problems);
 }
 

@@ -67,7 +67,8 @@ class Search {
     std::priority_queue<Node> open(std::less<Node>(), Roots());
     int visited = 0;
     while (!open.empty() && found.size() < static_cast<std::size_t>(config_.max_hypotheses)) {
-      const double least = found.empty() ? 0.0 : config_.min_score_share * found.front().score;
+      const double best = found.empty() ? 0.0 : found.front().score;
+      const double least = std::max(config_.min_score, config_.min_score_share * best);
       if (open.top().bound <= least || visited > config_.max_nodes) break;
       if (open.top().level == 0) {
         const PoseHypothesis hypothesis = HypothesisOf(open.top());
@@ -235,6 +236,8 @@ void PoseSearchConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("max_cells", max_cells, "cubes of the scan that are compared");
   visitor.Field("level_share", level_share, "weight of floors and ceilings, 0 to 1");
   visitor.Field("max_hypotheses", max_hypotheses, "poses that are followed up");
+  visitor.Field("min_score", min_score,
+                "share of the scan's structure that the map must hold at these, 0 to 1");
   visitor.Field("min_score_share", min_score_share,
                 "score that these need, share of the best one's, 0 to 1");
   visitor.Field("same_place_m", same_place_m, "distance up to which two poses are the same [m]");
@@ -250,6 +253,8 @@ void PoseSearchConfig::Validate(ConfigProblems& problems) const {
   problems.Require(level_share >= 0.0 && level_share < 1.0, "search.level_share",
                    "must be at least 0 and less than 1");
   problems.Require(max_hypotheses >= 1, "search.max_hypotheses", "must be at least 1");
+  problems.Require(min_score >= 0.0 && min_score < 1.0, "search.min_score",
+                   "must be at least 0 and less than 1");
   problems.Require(min_score_share >= 0.0 && min_score_share < 1.0, "search.min_score_share",
                    "must be at least 0 and less than 1");
   problems.Require(same_place_m >= 0.0, "search.same_place_m", "must not be negative");

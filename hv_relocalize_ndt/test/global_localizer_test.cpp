@@ -134,7 +134,10 @@ TEST_F(GlobalLocalizerTest, AScanBesideTheMappedAreaIsRefused) {
   const PriorMap map("one end of the hall", mapped, RelocalizeConfig());
   LocalizationQuery query;
   query.points = ScanOf(hall, OnRing(0.1, 4.8, 2.0), random);
-  ExpectRefused(Locate(query, map), "of what the scan sees");
+  ExpectRefused(Locate(query, map), "nothing in the map resembles");
+  RelocalizeConfig config;
+  config.search.min_score = 0.0;
+  ExpectRefused(GlobalLocalizer(config, map).Locate(query), "of what the scan sees");
 }
 
 TEST_F(GlobalLocalizerTest, TwinHallsAreAmbiguous) {

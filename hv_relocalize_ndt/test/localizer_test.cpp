@@ -2,6 +2,8 @@
 
 #include <memory>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -60,6 +62,15 @@ class Drive {
   std::uint32_t segment_ = 0;
   Pose T_odom_imu_ = MakePose(RotationFromRpy(0.01, -0.02, 1.0), {0.0, 0.0, 0.0});
 };
+
+/// A few returns of each scan, as of a sensor of few rays.
+TrackedScan Sparse(TrackedScan scan) {
+  constexpr std::size_t kOneOf = 101;
+  std::vector<Eigen::Vector3f> points;
+  for (std::size_t i = 0; i < scan.points.size(); i += kOneOf) points.push_back(scan.points[i]);
+  scan.points = std::move(points);
+  return scan;
+}
 
 class LocalizerTest : public testing::Test {
  protected:
@@ -207,6 +218,22 @@ TEST_F(LocalizerTest, OutsideOfTheMapOdometryGoesOnForAWhile) {
   }
   EXPECT_TRUE(alone);
   EXPECT_EQ(update.state, LocalizerState::kLost);
+}
+
+TEST_F(LocalizerTest, ScansThatShowTooLittleAloneAreLookedForTogether) {
+  LocalizerConfig alone;
+  alone.submap.scans = 1;
+  Localizer each_alone(alone, *map_);
+  LocalizerUpdate update;
+  for (int i = 0; i < 24 && update.state != LocalizerState::kTracking; ++i) {
+    const TrackedScan scan = Sparse(drive_.Next());
+    update = localizer_.Add(scan);
+    EXPECT_EQ(each_alone.Add(scan).state, LocalizerState::kLost);
+  }
+  // What odometry put together is as exact as that.
+  EXPECT_EQ(update.state, LocalizerState::kTracking) << update.reason;
+  EXPECT_LT((update.T_map_imu.translation() - drive_.T_map_imu().translation()).norm(), 0.05);
+  EXPECT_LT(RotationDistance(update.T_map_imu, drive_.T_map_imu()), 1.0 * kDegree);
 }
 
 TEST_F(LocalizerTest, EmptyScansAreTotal) {

@@ -29,6 +29,7 @@ class PoseSearchTest : public testing::Test {
     const NdtLevel scan(config_.cell_m, ScanOf(hall, truth_, random));
     scan_ = StructureCells(scan, Eigen::Matrix3d::Identity());
     config_.max_cells = 4 * static_cast<int>(scan_.size());
+    config_.min_score = 0.0;
   }
 
   PoseWindow Everywhere() const {
@@ -208,6 +209,15 @@ TEST_F(PoseSearchTest, ResultDoesNotDependOnThreads) {
     EXPECT_EQ(one[i].score, two[i].score);
     EXPECT_EQ(one[i].T_map_level.matrix(), two[i].T_map_level.matrix());
   }
+}
+
+TEST_F(PoseSearchTest, NothingIsFoundBelowTheLeastScore) {
+  const double best = Find(Everywhere()).front().score;
+  config_.min_score = best - 0.01;
+  ASSERT_FALSE(Find(Everywhere()).empty());
+  EXPECT_EQ(Find(Everywhere()).front().score, best);
+  config_.min_score = best + 0.01;
+  EXPECT_TRUE(Find(Everywhere()).empty());
 }
 
 TEST_F(PoseSearchTest, WithoutUprightStructureNothingIsFound) {

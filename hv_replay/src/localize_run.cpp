@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "hv_replay/map_picture.h"
 #include "hv_replay/result_files.h"
 #include "hv_replay/trajectory_error.h"
 
@@ -44,31 +45,38 @@ JsonObject TimesJson(const std::vector<double>& milliseconds) {
 
 }  // namespace
 
-LocalizeRun::LocalizeRun(const SlamConfig& config, const std::string& map,
-                         const std::vector<std::string>& bags, const std::string& out_dir,
-                         const std::optional<Pose>& guess)
+LocalizeRun::LocalizeRun(const SlamConfig& config, const LocalizeRunOptions& options)
     : config_(config),
-      out_dir_(CreateDirectory(out_dir)),
-      map_(relocalize::PriorMap::Load(map, config.localization.relocalize)),
+      options_(options),
+      map_(relocalize::PriorMap::Load(options.map, config.localization.relocalize)),
       localizer_(config.localization, map_),
-      odometry_(config.system, bags, "hv_localize"),
-      log_(out_dir + "/localization.csv",
+      odometry_(config.system, options.bags, "hv_localize"),
+      log_(CreateDirectory(options.out) + "/localization.csv",
            "stamp,state,registered,searched,fit,overlap,seen_through,sigma_m,sigma_deg,innovation,"
            "ms,reason") {
-  if (guess) localizer_.SetGuess({*guess});
+  if (options.guess) localizer_.SetGuess({*options.guess});
 }
 
 LocalizeRunSummary LocalizeRun::Run() {
-  WriteText(out_dir_ + "/config.yaml", ToYaml(config_));
+  WriteText(options_.out + "/config.yaml", ToYaml(config_));
   odometry_.clock = [this](Time now) {
     const relocalize::LocalizerUpdate update = localizer_.Wait(now);
     if (update.state != state_) Note(update, now, 0.0);
   };
   summary_.odometry =
       odometry_.Run([this](const lio::ScanResult& result) { Take(result); }, "localisation");
-  WriteTum(out_dir_ + "/trajectory.tum", Trajectory(poses_));
-  WriteText(out_dir_ + "/summary.json", SummaryJson(summary_).ToString() + "\n");
+  const Trajectory trajectory(poses_);
+  WriteTum(options_.out + "/trajectory.tum", trajectory);
+  WriteText(options_.out + "/summary.json", SummaryJson(summary_).ToString() + "\n");
+  if (options_.pictures) Draw(trajectory);
   return summary_;
+}
+
+void LocalizeRun::Draw(const Trajectory& trajectory) const {
+  constexpr double kCell_m = 0.1;
+  MapPicture picture(kCell_m);
+  for (const Eigen::Vector3f& point : map_.points()) picture.Add(point.cast<double>());
+  picture.Save(trajectory, "localised in the map", options_.out + "/map.png");
 }
 
 void LocalizeRun::Take(const lio::ScanResult& result) {

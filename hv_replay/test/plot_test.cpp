@@ -1,5 +1,6 @@
 #include "hv_replay/plot.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -168,6 +169,28 @@ TEST_F(PlotFile, MapShowsWallsBrighterThanFloor) {
   };
   EXPECT_GT(brightness(0.498), brightness(0.3) + 150);
   EXPECT_GT(brightness(0.3), brightness(0.01) + 15);
+}
+
+TEST_F(PlotFile, PathOnAMapIsInterruptedWhereItIsUnknown) {
+  MapPicture map(0.1);
+  for (int i = 0; i < 100; ++i) {
+    for (int k = 0; k < 100; ++k) map.Add({0.1 * i + 0.05, 0.1 * k + 0.05, 0.0});
+  }
+  const auto whiteness_between = [&](double gap_s) {
+    std::vector<StampedPose> poses(2);
+    poses[0] = {Time::FromSeconds(100.0), MakePose(Eigen::Matrix3d::Identity(), {1.0, 5.0, 0.0})};
+    poses[1] = {poses[0].stamp + gap_s, MakePose(Eigen::Matrix3d::Identity(), {9.0, 5.0, 0.0})};
+    map.Save(Trajectory(poses), "", path_);
+    const cv::Mat image = cv::imread(path_);
+    int most = 0;
+    for (int row = 0; row < image.rows; ++row) {
+      const cv::Vec3b pixel = image.at<cv::Vec3b>(row, image.cols / 2);
+      most = std::max(most, static_cast<int>(std::min({pixel[0], pixel[1], pixel[2]})));
+    }
+    return most;
+  };
+  EXPECT_GT(whiteness_between(0.1), 230);
+  EXPECT_LT(whiteness_between(5.0), 230);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ struct Arguments {
   std::string out;
   std::vector<double> guess;
   int threads = 0;
+  bool no_pictures = false;
   bool json = false;
 };
 
@@ -35,6 +36,7 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--threads", arguments.threads, "threads of one scan's work; 0: as configured")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  app.add_flag("--no-pictures", arguments.no_pictures, "skip map.png");
   app.add_flag("--json", arguments.json, "print the summary as one JSON object");
 }
 
@@ -52,8 +54,9 @@ int Run(const Arguments& arguments) {
   hv::replay::SlamConfig config;
   hv::ReadConfig(hv::LoadYamlFile(arguments.config), arguments.config, config);
   if (arguments.threads > 0) config.system.odometry.threads = arguments.threads;
-  hv::replay::LocalizeRun run(config, arguments.map, arguments.bags, arguments.out,
-                              hv::replay::GuessFrom(arguments.guess));
+  hv::replay::LocalizeRun run(
+      config, {arguments.map, arguments.bags, arguments.out, hv::replay::GuessFrom(arguments.guess),
+               !arguments.no_pictures});
   const hv::replay::LocalizeRunSummary summary = run.Run();
   if (arguments.json) {
     std::printf("%s\n", hv::replay::SummaryJson(summary).ToString().c_str());

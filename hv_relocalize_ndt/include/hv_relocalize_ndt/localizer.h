@@ -13,6 +13,7 @@
 #include "hv_relocalize_ndt/localizer_config.h"
 #include "hv_relocalize_ndt/map_pose_filter.h"
 #include "hv_relocalize_ndt/prior_map.h"
+#include "hv_relocalize_ndt/recent_scans.h"
 
 namespace hv::relocalize {
 
@@ -53,7 +54,8 @@ struct LocalizerUpdate {
 /// Localisation in a prior map (paper 4.4.1): odometry carries the pose at its rate, registrations
 /// of scans to the map at a low rate take its drift out. Says that it is lost instead of drifting
 /// on, when what the map knows contradicts what is seen, and then looks for its place anywhere in
-/// the map. Keeps a reference to the map. Not thread-safe.
+/// the map: for a scan, or for what was seen along the last metres. Keeps a reference to the map.
+/// Not thread-safe.
 class Localizer {
  public:
   Localizer(const LocalizerConfig& config, const PriorMap& map);
@@ -78,6 +80,7 @@ class Localizer {
  private:
   void Follow(const TrackedScan& scan);
   void Search(const TrackedScan& scan);
+  LocalizationQuery QueryOf(const TrackedScan& scan);
   void Register(const TrackedScan& scan);
   void GoOnWithoutMap();
   Matrix6d CovarianceOfComparison(const NdtResult& aligned) const;
@@ -91,6 +94,7 @@ class Localizer {
   GlobalLocalizer global_;
   NdtRegistration registration_;
   MapPoseFilter filter_;
+  RecentScans recent_;  ///< since the place was lost
   std::optional<PoseGuess> guess_;
   LocalizerState state_ = LocalizerState::kLost;
   std::string reason_ = "not localised yet";
@@ -98,6 +102,7 @@ class Localizer {
   std::optional<Time> last_comparison_;
   std::uint32_t segment_ = 0;
   int contradictions_ = 0;
+  bool together_ = false;   ///< the next search is for recent scans too
   LocalizerUpdate update_;  ///< of the scan at hand
 };
 

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "hv_core/config.h"
+#include "hv_relocalize_ndt/recent_scans.h"
 #include "hv_relocalize_ndt/relocalize_config.h"
 
 namespace hv::relocalize {
@@ -49,6 +50,7 @@ struct LocalizationOutputConfig {
 struct LocalizerConfig {
   RelocalizeConfig relocalize;
   TrackingConfig tracking;
+  RecentScansConfig submap;
   LocalizationOutputConfig output;
 
   void Describe(ConfigVisitor& visitor);

@@ -16,6 +16,7 @@ struct PoseSearchConfig {
   int max_cells = 150;
   double level_share = 0.2;
   int max_hypotheses = 8;
+  double min_score = 0.4;
   double min_score_share = 0.8;
   double same_place_m = 1.5;
   double same_heading_deg = 15.0;
@@ -41,7 +42,8 @@ struct PoseHypothesis {
 
 /// Finds the poses in a window at which the structure of a scan fits the map best, by branch and
 /// bound over position and heading; the vertical is known. Exhaustive: what it returns are the best
-/// poses of the window at the resolution of the grid, best first, at distinct places.
+/// poses of the window at the resolution of the grid, best first, at distinct places; none where
+/// nothing resembles the scan.
 class PoseSearch {
  public:
   PoseSearch(const PoseSearchConfig& config, const StructureGrid& grid)

@@ -26,25 +26,33 @@ struct LocalizeRunSummary {
   std::vector<double> search_ms;  ///< of searches
 };
 
+/// What is localised, and where.
+struct LocalizeRunOptions {
+  std::string map;                ///< folder, PCD or PLY
+  std::vector<std::string> bags;  ///< read as one
+  std::string out;                ///< folder for the results
+  std::optional<Pose> guess;      ///< of the IMU in the map at the first scan
+  bool pictures = true;           ///< map.png
+};
+
 /// Localisation in a saved map over bags with the cores that the nodes use: odometry and Localizer.
 class LocalizeRun {
  public:
-  /// Creates `out_dir`, reads the map and opens the bags. `guess`: pose of the IMU in the map at
-  /// the first scan. Throws InputError.
-  LocalizeRun(const SlamConfig& config, const std::string& map,
-              const std::vector<std::string>& bags, const std::string& out_dir,
-              const std::optional<Pose>& guess);
+  /// Creates the folder for the results, reads the map and opens the bags. Throws InputError.
+  LocalizeRun(const SlamConfig& config, const LocalizeRunOptions& options);
 
   /// Runs to the end of the bags and writes trajectory.tum (poses of the IMU in the map at scan
-  /// ends, while localised), localization.csv (a row a scan), summary.json and config.yaml.
+  /// ends, while localised), localization.csv (a row a scan), summary.json, config.yaml and
+  /// map.png, the map with the trajectory.
   LocalizeRunSummary Run();
 
  private:
   void Take(const lio::ScanResult& result);
   void Note(const relocalize::LocalizerUpdate& update, Time stamp, double elapsed_ms);
+  void Draw(const Trajectory& trajectory) const;
 
   SlamConfig config_;
-  std::string out_dir_;
+  LocalizeRunOptions options_;
   relocalize::PriorMap map_;
   relocalize::Localizer localizer_;
   OdometryRun odometry_;

@@ -24,8 +24,8 @@ class MapPicture {
 
   std::size_t cells() const { return columns_.size(); }
 
-  /// Paints the map with `trajectory` on top (may be empty). Throws InputError when there are no
-  /// points or the file cannot be written.
+  /// Paints the map with `trajectory` on top (may be empty), interrupted where that is for more
+  /// than a second. Throws InputError when there are no points or the file cannot be written.
   void Save(const Trajectory& trajectory, const std::string& title, const std::string& path) const;
 
  private:

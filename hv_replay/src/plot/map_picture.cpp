@@ -169,6 +169,8 @@ void MapPicture::Add(const Eigen::Vector3d& point) {
 namespace {
 
 constexpr plot::Rgb kPathColour = {255, 255, 255};
+constexpr plot::Rgb kPathRimColour = {11, 16, 25};
+constexpr plot::Rgb kStartColour = {74, 222, 128};
 constexpr plot::Rgb kNoteColour = {170, 182, 200};
 
 /// A bar of a round length in the lower left corner.
@@ -187,6 +189,21 @@ void DrawScaleBar(plot::Canvas& canvas, double pixels_per_metre) {
   canvas.Text({right + 10.0, base + 5.0}, text, style);
 }
 
+using Line = std::vector<plot::PixelPoint>;
+
+/// The line of a trajectory; a new one after each gap.
+std::vector<Line> LinesOf(const Trajectory& trajectory, const MapPainter& painter) {
+  constexpr double kGap_s = 1.0;
+  std::vector<Line> lines;
+  Time last;
+  for (const StampedPose& pose : trajectory.poses()) {
+    if (lines.empty() || pose.stamp - last > kGap_s) lines.emplace_back();
+    lines.back().push_back(painter.ToPixel(pose.pose.translation()));
+    last = pose.stamp;
+  }
+  return lines;
+}
+
 }  // namespace
 
 void MapPicture::Save(const Trajectory& trajectory, const std::string& title,
@@ -194,13 +211,10 @@ void MapPicture::Save(const Trajectory& trajectory, const std::string& title,
   if (columns_.empty()) throw InputError("no map points to draw");
   const MapPainter painter(*this);
   plot::Canvas canvas(painter.Paint());
-  std::vector<plot::PixelPoint> line;
-  for (const StampedPose& pose : trajectory.poses()) {
-    line.push_back(painter.ToPixel(pose.pose.translation()));
-  }
-  canvas.Polyline(line, {11, 16, 25}, 5.0);
-  canvas.Polyline(line, kPathColour, 2.0);
-  if (!line.empty()) canvas.Disc(line.front(), 5.0, {74, 222, 128});
+  const std::vector<Line> lines = LinesOf(trajectory, painter);
+  for (const Line& line : lines) canvas.Polyline(line, kPathRimColour, 5.0);
+  for (const Line& line : lines) canvas.Polyline(line, kPathColour, 2.0);
+  if (!lines.empty()) canvas.Disc(lines.front().front(), 5.0, kStartColour);
   const plot::TextStyle style = {20.0, kPathColour, plot::TextAnchor::kLeft, true};
   canvas.Text({28.0, 40.0}, title, style);
   DrawScaleBar(canvas, painter.pixels_per_metre());
