@@ -9,13 +9,13 @@ import unittest
 import actionlib
 import rospy
 import rostest
-import tf2_ros
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
+from tf2_msgs.msg import TFMessage
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from recording import Collector, Diagnostics, wait_until  # noqa: E402
@@ -31,9 +31,10 @@ def wait_long(condition):
 
 
 def pose_of(message):
-    """x, y, yaw."""
-    p = message.position
-    q = message.orientation
+    """x, y, yaw of a Pose or Transform."""
+    is_pose = hasattr(message, "position")
+    p = message.position if is_pose else message.translation
+    q = message.orientation if is_pose else message.rotation
     return (p.x, p.y, 2.0 * math.atan2(q.z, q.w))
 
 
@@ -42,6 +43,13 @@ def seen_from(start, pose):
     x, y = pose[0] - start[0], pose[1] - start[1]
     cos, sin = math.cos(start[2]), math.sin(start[2])
     return (x * cos + y * sin, y * cos - x * sin)
+
+
+def moved(start, step):
+    """A pose that is given as seen from a start."""
+    cos, sin = math.cos(start[2]), math.sin(start[2])
+    return (start[0] + step[0] * cos - step[1] * sin, start[1] + step[0] * sin + step[1] * cos,
+            start[2] + step[2])
 
 
 def goal_in(frame, x, y, yaw=0.0):
@@ -68,16 +76,15 @@ class Navigation(unittest.TestCase):
         cls.maps = Collector("/map", OccupancyGrid)
         cls.local_grids = Collector("/local_grid", OccupancyGrid)
         cls.diagnostics = Diagnostics()
-        cls.transforms = tf2_ros.Buffer()
-        cls.listener = tf2_ros.TransformListener(cls.transforms)
+        cls.odometry = Collector("/odometry", Odometry)
+        cls.transforms = Collector("/tf", TFMessage)
         cls.client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         assert cls.client.wait_for_server(rospy.Duration(30.0))
         assert wait_until(lambda: len(cls.local_grids) > 2 and len(cls.truth) > 0 and
-                          cls.transforms.can_transform("map", "base_link", rospy.Time(0)))
+                          cls.place_of_odometry())
         cls.start = pose_of(cls.truth.messages[-1].pose.pose)
-        transform = cls.transforms.lookup_transform("map", "base_link", rospy.Time(0)).transform
-        cls.start_in_map = (transform.translation.x, transform.translation.y,
-                            2.0 * math.atan2(transform.rotation.z, transform.rotation.w))
+        cls.start_in_map = moved(cls.place_of_odometry()[-1],
+                                 pose_of(cls.odometry.messages[-1].pose.pose))
         cls.commands_before = len(cls.commands)
         cls.subscriber = rospy.Subscriber(
             "/cmd_vel", Twist, lambda _: cls.command_times.append(rospy.Time.now().to_sec()))
@@ -93,11 +100,15 @@ class Navigation(unittest.TestCase):
         return seen_from(cls.start, pose_of(cls.truth.messages[-1].pose.pose))
 
     @classmethod
+    def place_of_odometry(cls):
+        """All T_map_odom so far."""
+        return [pose_of(transform.transform) for message in cls.transforms.messages
+                for transform in message.transforms if transform.child_frame_id == "odom"]
+
+    @classmethod
     def goal_at(cls, ahead, left):
         """From where the robot started, in the map."""
-        x, y, yaw = cls.start_in_map
-        return goal_in("map", x + ahead * math.cos(yaw) - left * math.sin(yaw),
-                       y + ahead * math.sin(yaw) + left * math.cos(yaw), yaw)
+        return goal_in("map", *moved(cls.start_in_map, (ahead, left, 0.0)))
 
     @classmethod
     def speed(cls):
