@@ -52,10 +52,15 @@ std::optional<Candidate> DynamicWindow::Drive() const {
   return best;
 }
 
+/// On the spot a robot stays where it is: where the margin leaves no room, the bare footprint may.
 std::optional<Candidate> DynamicWindow::Turn(double turn) const {
   const double other = turn - std::copysign(2.0 * M_PI, turn);
-  for (const double way : {turn, other}) {
-    if (!footprint_.CollidesTurning(grid_, pose_, way)) return TurnCandidate(way);
+  Footprint bare = footprint_;
+  bare.margin_m = std::min(bare.margin_m, 0.0);
+  for (const Footprint& footprint : {footprint_, bare}) {
+    for (const double way : {turn, other}) {
+      if (!footprint.CollidesTurning(grid_, pose_, way)) return TurnCandidate(way);
+    }
   }
   return std::nullopt;
 }

@@ -66,6 +66,7 @@ std::vector<Vector2i> GroundModel::PlaceRobot(const Pose& T_odom_base) {
       if (!columns_.Contains(at) || away.norm() > config_.seed_radius_m + 0.5 * voxel_m) continue;
       Cell& cell = cells_[columns_.Index(at)];
       cell.kind = Ground::kSeen;
+      cell.stood_upon = true;
       cell.slope = slope;
       cell.height = cell.reference = floor.z() + slope.dot(away);
       covered.push_back(at);
@@ -167,13 +168,15 @@ bool GroundModel::TakeSurface(const SurfaceColumns::Column& column, const Expect
   return true;
 }
 
-/// Compares seen ground over a distance, where the height of a step no longer counts for much.
+/// Compares seen ground over a distance, where the height of a step no longer counts for much. The
+/// floor under the robot is no slope, whatever was taken for ground beside it.
 void GroundModel::MarkSlopes() {
   std::vector<std::size_t> steep;
   for (int y = 0; y < columns_.side(); ++y) {
     for (int x = 0; x < columns_.side(); ++x) {
       const Vector2i cell(x, y);
-      if (cells_[columns_.Index(cell)].kind != Ground::kSeen) continue;
+      const Cell& ground = cells_[columns_.Index(cell)];
+      if (ground.kind != Ground::kSeen || ground.stood_upon) continue;
       const bool any = std::any_of(kSides.begin(), kSides.end(),
                                    [&](const Vector2i& side) { return IsSteep(cell, side); });
       if (any) steep.push_back(columns_.Index(cell));

@@ -137,6 +137,7 @@ void MappingConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("ground", ground, "the ground, and what the robot can drive on");
   visitor.Section("obstacle_grid", obstacle_grid, "the 2-D grids of obstacles");
   visitor.Section("global_grid", global_grid, "the grid in the frame of the map");
+  visitor.Section("moving", moving, "people, and whatever else moves");
 }
 
 void MappingConfig::Validate(ConfigProblems& problems) const {
@@ -145,6 +146,7 @@ void MappingConfig::Validate(ConfigProblems& problems) const {
   ground.Validate(problems);
   obstacle_grid.Validate(problems);
   global_grid.Validate(problems);
+  moving.Validate(problems);
 }
 
 }  // namespace hv::navigation

@@ -16,7 +16,8 @@ Surroundings::Surroundings(const MappingConfig& config, double clearance_m,
       unknown_in_map_(!saved && config.global_grid.cross_unknown ? Unknown::kFree
                                                                  : Unknown::kOccupied),
       obstacles_(config.obstacle_map),
-      global_(config.global_grid, std::move(saved)) {
+      global_(config.global_grid, std::move(saved)),
+      moving_(config.moving) {
   UpdateMap();
 }
 
@@ -59,8 +60,14 @@ const SurroundingsView& Surroundings::Update(const Pose& T_odom_base,
     global_.Update(seen, Planar(*T_map_odom), T_odom_base.translation().head<2>());
     UpdateMap();
   }
+  const std::vector<Eigen::Vector2i> taken =
+      moving_.Predict(*scan_stamp_, seen, T_odom_base.translation().head<2>());
   view_.local =
       std::make_shared<const ClearanceGrid>(std::move(seen), Unknown::kFree, clearance_m_);
+  view_.ahead = view_.local;
+  if (!taken.empty()) {
+    view_.ahead = std::make_shared<const ClearanceGrid>(view_.local->WithObstacles(taken));
+  }
   return view_;
 }
 
@@ -78,6 +85,7 @@ void Surroundings::UpdateMap() {
 
 void Surroundings::ForgetObstacles() {
   obstacles_ = ObstacleMap(config_.obstacle_map);
+  moving_.Clear();
   scanned_ = false;
 }
 

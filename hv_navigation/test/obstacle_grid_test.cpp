@@ -164,6 +164,23 @@ TEST_F(ObstacleGridTest, RobotOnARampSeesTheRamp) {
   }
 }
 
+TEST_F(ObstacleGridTest, FloorUnderTheRobotIsNoSlopeBesideALowShelf) {
+  // Seen alone, without the floor around, as behind a robot that has forgotten what it saw.
+  std::vector<Point> shelf;
+  for (double x = -0.85; x < -0.4; x += 0.05) {
+    for (double y = -0.5; y < 0.5; y += 0.05) {
+      shelf.push_back({static_cast<float>(x), static_cast<float>(y), -0.48F, 1.0F, 0.0F, 0});
+    }
+  }
+  map_.MoveTo(At(0.0, 0.6).translation());
+  for (int i = 0; i < 3; ++i) map_.Insert(Sensor::kLidar, shelf, At(0.0, 0.6));
+  const OccupancyGrid grid = Grid(0.0);
+  EXPECT_GE(Count(grid, -0.8, -0.4, 0.05, kOccupied), 1);
+  for (const double y : {-0.2, -0.1, 0.0, 0.1, 0.2}) {
+    EXPECT_EQ(Count(grid, -0.2, 0.3, y, kOccupied), 0) << y;
+  }
+}
+
 TEST_F(ObstacleGridTest, HoleIsAnObstacle) {
   scene_.AddFloor(-20.0, 2.0);
   scene_.AddFloor(2.0, 20.0, -0.6);

@@ -56,11 +56,14 @@ std::optional<GoalSampler::Goal> GoalSampler::Next(const navigation::PlanarPose&
   search.Flood(*from, [this](const Vector2i& cell) {
     return map_.ClearanceAt(cell) >= circumscribed_m_ ? 1.0 : 0.0;
   });
+  // The border of an obstacle is known to a cell.
+  const double cell_m = map_.grid().resolution_m;
   std::vector<Vector2i> cells;
   for (int y = 0; y < map_.grid().height; ++y) {
     for (int x = 0; x < map_.grid().width; ++x) {
       const bool far = (map_.CenterOf({x, y}) - start.position).norm() >= least_m;
-      if (far && search.Reached({x, y})) cells.emplace_back(x, y);
+      const bool roomy = map_.ClearanceAt(Vector2i(x, y)) >= circumscribed_m_ + cell_m;
+      if (far && roomy && search.Reached({x, y})) cells.emplace_back(x, y);
     }
   }
   if (cells.empty()) return std::nullopt;

@@ -51,6 +51,27 @@ std::unique_ptr<RobotLocator> MakeLocator(const SlamConfig& config,
   return LocateBySensors(config, options.map, rig);
 }
 
+const char* NameOf(sim::ContactKind kind) {
+  switch (kind) {
+    case sim::ContactKind::kObstacle:
+      return "obstacle";
+    case sim::ContactKind::kPerson:
+      return "person";
+    case sim::ContactKind::kEdge:
+      return "edge";
+  }
+  return "";
+}
+
+std::string CollisionRow(const sim::Collision& collision, const navigation::PlanarPose& place,
+                         const NavigationTrial& trial) {
+  char text[128];
+  std::snprintf(text, sizeof(text), ",%d,%s,%.3f,%.3f,%.4f,%.3f,%.3f", trial.number,
+                NameOf(collision.contact.kind), place.position.x(), place.position.y(), place.yaw,
+                collision.contact.velocity.linear_mps, collision.contact.velocity.angular_rps);
+  return ToString(collision.stamp) + text;
+}
+
 }  // namespace
 
 NavigationRun::NavigationRun(const SlamConfig& config, sim::World world,
@@ -68,6 +89,8 @@ NavigationRun::NavigationRun(const SlamConfig& config, sim::World world,
       std::make_unique<SimulatedDrive>(std::move(world), simulation, config_,
                                        MakeLocator(config_, options_, rig, T_map_world_), saved_);
   trial_log_ = std::make_unique<CsvLog>(options_.out + "/trials.csv", TrialHeader());
+  collision_log_ = std::make_unique<CsvLog>(options_.out + "/collisions.csv",
+                                            "stamp,trial,with,x,y,yaw,linear_mps,angular_rps");
   cycle_log_ = std::make_unique<CsvLog>(
       options_.out + "/cycles.csv",
       "stamp,trial,state,x,y,yaw,true_x,true_y,true_yaw,linear_mps,angular_rps,command_linear,"
@@ -183,6 +206,7 @@ void NavigationRun::NoteCollisions(const DriveCycle& cycle, NavigationTrial& tri
   for (const sim::Collision& collision : cycle.collisions) {
     const sim::DriveCommand& velocity = collision.contact.velocity;
     const bool moved = Moves({velocity.linear_mps, velocity.angular_rps});
+    collision_log_->Append(CollisionRow(collision, InMap(collision.contact.T_world_base), trial));
     if (!moved && collision.contact.kind == sim::ContactKind::kPerson) {
       ++trial.hit_by_people;
       continue;

@@ -40,7 +40,8 @@ class GroundModel {
  private:
   struct Cell {
     Ground kind = Ground::kUnknown;
-    bool pending = false;  ///< a step from one side; another side may lead onto it
+    bool stood_upon = false;  ///< by the robot, now
+    bool pending = false;     ///< a step from one side; another side may lead onto it
     double height = 0.0;
     double reference = 0.0;
     double unseen_m = 0.0;                            ///< way from where ground was seen

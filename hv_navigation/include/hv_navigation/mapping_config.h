@@ -3,6 +3,7 @@
 #include <string>
 
 #include "hv_core/config.h"
+#include "hv_navigation/moving_obstacles.h"
 
 namespace hv::navigation {
 
@@ -90,6 +91,7 @@ struct MappingConfig {
   GroundConfig ground;
   ObstacleGridConfig obstacle_grid;
   GlobalGridConfig global_grid;
+  MovingObstaclesConfig moving;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

@@ -14,6 +14,7 @@
 #include "hv_navigation/depth_projection.h"
 #include "hv_navigation/global_grid.h"
 #include "hv_navigation/mapping_config.h"
+#include "hv_navigation/moving_obstacles.h"
 #include "hv_navigation/obstacle_map.h"
 
 namespace hv::navigation {
@@ -21,6 +22,7 @@ namespace hv::navigation {
 /// What planning needs to know about obstacles, as NavigationInput wants it.
 struct SurroundingsView {
   std::shared_ptr<const ClearanceGrid> local;  ///< frame of odometry; null before the first scan
+  std::shared_ptr<const ClearanceGrid> ahead;  ///< the same, and where what moves may get to
   std::shared_ptr<const ClearanceGrid> map;    ///< frame of the map; null while nothing is known
   Time obstacles_stamp;  ///< of the oldest among the newest data of the sensors
 };
@@ -78,6 +80,7 @@ class Surroundings {
   ClearanceGrid::Unknown unknown_in_map_;
   ObstacleMap obstacles_;
   GlobalGrid global_;
+  MovingObstacles moving_;
   std::optional<Time> scan_stamp_;
   std::optional<Time> depth_stamp_;
   bool scanned_ = false;  ///< since obstacles were forgotten

@@ -37,10 +37,10 @@ class NavigationRun {
   NavigationRun(const SlamConfig& config, sim::World world, const sim::LiveConfig& simulation,
                 const NavigationRunOptions& options);
 
-  /// Drives to all goals, as far as there are any, and writes trials.csv, cycles.csv (a row a
-  /// control cycle), summary.json, config.yaml and drives.png. With a scenario, goals count to
-  /// which there was a place for a box, and at most thrice as many are tried. Throws InputError
-  /// when the robot does not find its place.
+  /// Drives to all goals, as far as there are any, and writes trials.csv, collisions.csv,
+  /// cycles.csv (a row a control cycle), summary.json, config.yaml and drives.png. With a scenario,
+  /// goals count to which there was a place for a box, and at most thrice as many are tried. Throws
+  /// InputError when the robot does not find its place.
   std::vector<NavigationTrial> Run();
 
  private:
@@ -69,6 +69,7 @@ class NavigationRun {
   std::optional<sim::TimedBox> box_;  ///< of the drive under way
   DriveCycle last_;
   std::unique_ptr<CsvLog> trial_log_;
+  std::unique_ptr<CsvLog> collision_log_;
   std::unique_ptr<CsvLog> cycle_log_;
 };
 

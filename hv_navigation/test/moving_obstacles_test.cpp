@@ -1,0 +1,150 @@
+#include "hv_navigation/moving_obstacles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace hv::navigation {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector2i;
+
+constexpr double kPeriod_s = 0.1;
+
+OccupancyGrid FreeGrid(const Vector2d& origin = {-6.0, -6.0}) {
+  OccupancyGrid grid;
+  grid.origin = origin;
+  grid.width = grid.height = 120;
+  grid.cells.assign(120U * 120U, OccupancyGrid::kFree);
+  return grid;
+}
+
+void AddDisc(OccupancyGrid& grid, const Vector2d& center, double radius_m) {
+  for (int y = 0; y < grid.height; ++y) {
+    for (int x = 0; x < grid.width; ++x) {
+      if ((grid.CenterOf({x, y}) - center).norm() <= radius_m) {
+        grid.At(x, y) = OccupancyGrid::kOccupied;
+      }
+    }
+  }
+}
+
+void AddWall(OccupancyGrid& grid, double x_m) {
+  for (int y = 0; y < grid.height; ++y) {
+    grid.At(grid.CellOf({x_m, 0.0}).x(), y) = OccupancyGrid::kOccupied;
+  }
+}
+
+class MovingObstaclesTest : public testing::Test {
+ protected:
+  std::vector<Vector2i> Show(const OccupancyGrid& grid) {
+    time_s_ += kPeriod_s;
+    return moving_.Predict(Time::FromSeconds(time_s_), grid, Vector2d::Zero());
+  }
+  /// Somebody walks; the grid and the prediction at the end.
+  std::vector<Vector2i> Walk(const Vector2d& from, const Vector2d& velocity, OccupancyGrid& grid) {
+    std::vector<Vector2i> cells;
+    for (int i = 0; i <= 12; ++i) {
+      grid = FreeGrid();
+      AddDisc(grid, from + i * kPeriod_s * velocity, 0.25);
+      cells = Show(grid);
+    }
+    return cells;
+  }
+  static bool Holds(const std::vector<Vector2i>& cells, const OccupancyGrid& grid,
+                    const Vector2d& position) {
+    return std::find(cells.begin(), cells.end(), grid.CellOf(position)) != cells.end();
+  }
+
+  MovingObstaclesConfig config_;
+  MovingObstacles moving_{config_};
+  double time_s_ = 100.0;
+};
+
+TEST_F(MovingObstaclesTest, WhoWalksIsTakenToWalkOn) {
+  for (const double heading : {0.0, 0.7, 1.57, 2.5, -2.0}) {
+    moving_.Clear();
+    time_s_ += 10.0;
+    const Vector2d ahead(std::cos(heading), std::sin(heading));
+    const Vector2d from = -1.2 * ahead;
+    OccupancyGrid grid;
+    const std::vector<Vector2i> cells = Walk(from, 1.0 * ahead, grid);
+    const Vector2d now = from + 1.2 * ahead;
+    EXPECT_TRUE(Holds(cells, grid, now + 0.9 * ahead)) << heading;
+    EXPECT_TRUE(Holds(cells, grid, now + 0.5 * ahead)) << heading;
+    EXPECT_FALSE(Holds(cells, grid, now - 0.7 * ahead)) << heading;
+    EXPECT_FALSE(Holds(cells, grid, now + Vector2d(-ahead.y(), ahead.x()))) << heading;
+    EXPECT_FALSE(Holds(cells, grid, now + 2.2 * ahead)) << heading;
+  }
+}
+
+TEST_F(MovingObstaclesTest, WhatStandsGoesNowhere) {
+  for (int i = 0; i < 20; ++i) {
+    OccupancyGrid grid = FreeGrid();
+    AddDisc(grid, {1.5, 0.3}, 0.3);
+    AddWall(grid, 2.5);
+    EXPECT_TRUE(Show(grid).empty()) << i;
+  }
+}
+
+TEST_F(MovingObstaclesTest, WhatComesIntoViewGoesNowhere) {
+  for (int i = 0; i < 20; ++i) {
+    OccupancyGrid grid = FreeGrid();
+    for (int y = 0; y < grid.height; ++y) {
+      for (int x = 0; x < grid.width; ++x) {
+        if (y > 40 + 2 * i) grid.At(x, y) = OccupancyGrid::kUnknown;
+      }
+    }
+    for (int y = 0; y < std::min(grid.height, 40 + 2 * i); ++y) {
+      grid.At(80, y) = OccupancyGrid::kOccupied;
+    }
+    EXPECT_TRUE(Show(grid).empty()) << i;
+  }
+}
+
+TEST_F(MovingObstaclesTest, GridsMoveWithTheRobot) {
+  std::vector<Vector2i> cells;
+  OccupancyGrid grid;
+  for (int i = 0; i < 20; ++i) {
+    grid = FreeGrid({-6.0 + 0.1 * i, -6.0});
+    AddDisc(grid, {1.5, 0.3}, 0.3);
+    EXPECT_TRUE(Show(grid).empty()) << i;
+  }
+}
+
+TEST_F(MovingObstaclesTest, SingleCellsAndWholeWallsAreNoPeople) {
+  Show(FreeGrid());
+  for (int i = 0; i < 6; ++i) Show(FreeGrid());
+  OccupancyGrid speck = FreeGrid();
+  AddDisc(speck, {1.0, 0.0}, 0.3);
+  for (int i = 0; i < 6; ++i) Show(speck);
+  speck.At(90, 60) = OccupancyGrid::kOccupied;
+  EXPECT_TRUE(Show(speck).empty());
+  OccupancyGrid shifted = FreeGrid();
+  AddWall(shifted, 1.0);
+  for (int i = 0; i < 8; ++i) Show(shifted);
+  OccupancyGrid jump = FreeGrid();
+  AddWall(jump, 1.2);
+  EXPECT_TRUE(Show(jump).empty());
+}
+
+TEST_F(MovingObstaclesTest, NothingIsToldWhenSwitchedOffOrAfterAPause) {
+  OccupancyGrid grid;
+  config_.predict = false;
+  MovingObstacles off(config_);
+  for (int i = 0; i <= 12; ++i) {
+    grid = FreeGrid();
+    AddDisc(grid, {-1.0 + 0.1 * i, 0.0}, 0.25);
+    EXPECT_TRUE(off.Predict(Time::FromSeconds(0.1 * i), grid, Vector2d::Zero()).empty());
+  }
+  EXPECT_FALSE(Walk({-1.0, 0.0}, {1.0, 0.0}, grid).empty());
+  time_s_ += 5.0;
+  AddDisc(grid, {3.0, 3.0}, 0.25);
+  EXPECT_TRUE(Show(grid).empty());
+}
+
+}  // namespace
+}  // namespace hv::navigation
