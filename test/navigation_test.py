@@ -79,7 +79,7 @@ class Navigation(unittest.TestCase):
         cls.odometry = Collector("/odometry", Odometry)
         cls.transforms = Collector("/tf", TFMessage)
         cls.client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-        assert cls.client.wait_for_server(rospy.Duration(30.0))
+        assert cls.client.wait_for_server()
         assert wait_until(lambda: len(cls.local_grids) > 2 and len(cls.truth) > 0 and
                           cls.place_of_odometry())
         cls.start = pose_of(cls.truth.messages[-1].pose.pose)
