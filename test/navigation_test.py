@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A simulated robot in a corridor with people: goals, a new goal on the way, cancelling, and sensors
+"""A simulated robot in a corridor with people: goals, a new goal on the way, cancelling, sensors
 that fall silent. Without a saved map: plans are made in what is seen on the way."""
 import math
 import os
