@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A simulated robot in a corridor with people: goals, a new goal on the way, cancelling, and sensors
+"""A simulated robot in a corridor with people: goals, a new goal on the way, cancelling, sensors
 that fall silent. Without a saved map: plans are made in what is seen on the way."""
 import math
 import os
@@ -79,7 +79,7 @@ class Navigation(unittest.TestCase):
         cls.odometry = Collector("/odometry", Odometry)
         cls.transforms = Collector("/tf", TFMessage)
         cls.client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-        assert cls.client.wait_for_server(rospy.Duration(30.0))
+        assert cls.client.wait_for_server()
         assert wait_until(lambda: len(cls.local_grids) > 2 and len(cls.truth) > 0 and
                           cls.place_of_odometry())
         cls.start = pose_of(cls.truth.messages[-1].pose.pose)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
 namespace hv::navigation {
@@ -33,6 +34,10 @@ std::pair<Vector2d, Vector2d> BoundsOf(const OccupancyGrid& grid, const PlanarPo
     high = high.cwiseMax(at);
   }
   return {low, high};
+}
+
+Eigen::Isometry2d Isometry(const PlanarPose& pose) {
+  return Eigen::Translation2d(pose.position) * Eigen::Isometry2d(Eigen::Rotation2Dd(pose.yaw));
 }
 
 template <typename Value>
@@ -151,7 +156,8 @@ OccupancyGrid GlobalGrid::Turned(const OccupancyGrid& observed,
   view.width = size.x();
   view.height = size.y();
   view.cells.assign(IndexIn(size.x(), 0, size.y()), OccupancyGrid::kUnknown);
-  const PlanarPose T_odom_map = T_map_odom.Inverse();
+  const Eigen::Isometry2d T_map_odom_2d = Isometry(T_map_odom);
+  const Eigen::Isometry2d T_odom_map = T_map_odom_2d.inverse();
   for (int y = 0; y < size.y(); ++y) {
     for (int x = 0; x < size.x(); ++x) {
       const Vector2i cell = observed.CellOf(T_odom_map * view.CenterOf({x, y}));
@@ -162,7 +168,7 @@ OccupancyGrid GlobalGrid::Turned(const OccupancyGrid& observed,
   for (int y = 0; y < observed.height; ++y) {
     for (int x = 0; x < observed.width; ++x) {
       if (!OccupancyGrid::IsOccupied(observed.At(x, y))) continue;
-      const Vector2i cell = view.CellOf(T_map_odom * observed.CenterOf({x, y}));
+      const Vector2i cell = view.CellOf(T_map_odom_2d * observed.CenterOf({x, y}));
       if (view.Contains(cell)) view.At(cell.x(), cell.y()) = OccupancyGrid::kOccupied;
     }
   }
