@@ -142,17 +142,20 @@ class Search {
 
   /// Exact above `least`; else as soon as it is known to be below.
   float Bound(const Node& node, float least) const {
-    constexpr std::size_t kStride = 16;
+    constexpr std::size_t kStride = 32;
     const TurnedScan& scan = turns_[node.turn];
-    float bound = 1.0F;
-    for (std::size_t begin = 0; begin < cells_.size() && bound > least; begin += kStride) {
-      const std::size_t end = std::min(begin + kStride, cells_.size());
+    const auto missing = [&](std::size_t begin, std::size_t end) {
+      int missed = 0;
       for (std::size_t i = begin; i < end; ++i) {
-        const bool held = (grid_.At(node.level, node.cell + scan.offsets[i]) & scan.fits[i]) != 0;
-        bound -= held ? 0.0F : (i < upright_ ? upright_weight_ : level_weight_);
+        missed += (grid_.At(node.level, node.cell + scan.offsets[i]) & scan.fits[i]) == 0 ? 1 : 0;
       }
+      return static_cast<float>(missed);
+    };
+    float bound = 1.0F;
+    for (std::size_t i = 0; i < upright_ && bound > least; i += kStride) {
+      bound -= upright_weight_ * missing(i, std::min(i + kStride, upright_));
     }
-    return bound;
+    return bound > least ? bound - level_weight_ * missing(upright_, cells_.size()) : bound;
   }
 
   /// Fills in the bounds.
