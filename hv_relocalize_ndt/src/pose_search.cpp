@@ -82,7 +82,7 @@ class Search {
         open.pop();
       }
       visited += static_cast<int>(batch.size());
-      for (const Node& child : ChildrenOf(batch)) {
+      for (const Node& child : ChildrenOf(batch, least)) {
         if (child.bound > least) open.push(child);
       }
     }
@@ -140,26 +140,30 @@ class Search {
     return turned;
   }
 
-  float Bound(const Node& node) const {
+  /// Exact above `least`; else as soon as it is known to be below.
+  float Bound(const Node& node, float least) const {
+    constexpr std::size_t kStride = 32;
     const TurnedScan& scan = turns_[node.turn];
-    int upright = 0;
-    int level = 0;
-    for (std::size_t i = 0; i < upright_; ++i) {
-      upright += (grid_.At(node.level, node.cell + scan.offsets[i]) & scan.fits[i]) != 0 ? 1 : 0;
+    const auto missing = [&](std::size_t begin, std::size_t end) {
+      int missed = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        missed += (grid_.At(node.level, node.cell + scan.offsets[i]) & scan.fits[i]) == 0 ? 1 : 0;
+      }
+      return static_cast<float>(missed);
+    };
+    float bound = 1.0F;
+    for (std::size_t i = 0; i < upright_ && bound > least; i += kStride) {
+      bound -= upright_weight_ * missing(i, std::min(i + kStride, upright_));
     }
-    for (std::size_t i = upright_; i < cells_.size(); ++i) {
-      level += (grid_.At(node.level, node.cell + scan.offsets[i]) & scan.fits[i]) != 0 ? 1 : 0;
-    }
-    return upright_weight_ * static_cast<float>(upright) +
-           level_weight_ * static_cast<float>(level);
+    return bound > least ? bound - level_weight_ * missing(upright_, cells_.size()) : bound;
   }
 
   /// Fills in the bounds.
-  void Rate(std::vector<Node>& nodes) const {
+  void Rate(std::vector<Node>& nodes, double least) const {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), kGrain),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                          nodes[i].bound = Bound(nodes[i]);
+                          nodes[i].bound = Bound(nodes[i], static_cast<float>(least));
                         }
                       });
   }
@@ -178,11 +182,11 @@ class Search {
         }
       }
     }
-    Rate(roots);
+    Rate(roots, config_.min_score);
     return roots;
   }
 
-  std::vector<Node> ChildrenOf(const std::vector<Node>& nodes) const {
+  std::vector<Node> ChildrenOf(const std::vector<Node>& nodes, double least) const {
     std::vector<Node> children;
     for (const Node& node : nodes) {
       const int half = 1 << (node.level - 1);
@@ -194,7 +198,7 @@ class Search {
         if (inside && grid_.CanStand(child.level, child.cell)) children.push_back(child);
       }
     }
-    Rate(children);
+    Rate(children, least);
     return children;
   }
 
