@@ -1,0 +1,3 @@
+#include "hv_explore_sac/belief.h"
+
+#include <gtest/gtest.h>
