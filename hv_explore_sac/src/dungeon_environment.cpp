@@ -38,7 +38,9 @@ Reward DungeonEnvironment::Step(int viewpoint) {
   transition.centroid_before = model_.frontiers().Centroid();
   const bool had_frontiers = !model_.frontiers().points().empty();
   travel_ += length;
-  SenseAt(model_.graph().CellOf(viewpoint));
+  // A copy: the graph moves its cells when it grows.
+  const Eigen::Vector2i cell = model_.graph().CellOf(viewpoint);
+  SenseAt(cell);
   transition.explored_after = explored();
   transition.centroid_after = model_.frontiers().Centroid();
   transition.has_centroids = had_frontiers && !model_.frontiers().points().empty();
