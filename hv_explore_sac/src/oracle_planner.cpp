@@ -3,6 +3,9 @@
 namespace hv::explore {
 namespace {
 
+/// How much harder the route of the first decision is looked for.
+constexpr int kFirstFactor = 10;
+
 int NearestWithUtility(const Observation& observation) {
   for (int i = 0; i < observation.size(); ++i) {
     if (observation.node(i).utility > 0) return i;
@@ -21,9 +24,10 @@ OraclePlanner::OraclePlanner(const PlannerInputs& inputs)
 Decision OraclePlanner::Choose(const Observation& observation, const ExplorationModel& model) {
   const Eigen::Vector2i& cell = model.graph().CellOf(model.robot());
   const int here = knowledge_.graph().At(cell);
-  const int restarts = route_.empty() ? config_.oracle_restarts : 0;
+  const int trials = first_ ? kFirstFactor * config_.oracle_trials : config_.oracle_trials;
+  first_ = false;
   while (!route_.empty() && route_.front() == here) route_.erase(route_.begin());
-  route_ = search_.Plan(here, knowledge_.KnownIn(model.belief()), std::move(route_), restarts);
+  route_ = search_.Plan(here, knowledge_.KnownIn(model.belief()), std::move(route_), trials);
   int goal = Observation::kRobot;
   if (!route_.empty()) goal = FarthestKnown(here, route_.front(), observation, model);
   if (goal == Observation::kRobot) goal = NearestWithUtility(observation);

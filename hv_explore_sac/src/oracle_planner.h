@@ -22,6 +22,7 @@ class OraclePlanner : public Planner {
   PlannerConfig config_;
   MapKnowledge knowledge_;
   RouteSearch search_;
+  bool first_ = true;
   std::vector<int> route_;
   mutable std::vector<int> node_of_;  ///< of each viewpoint of the model
 };

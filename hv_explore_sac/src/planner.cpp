@@ -15,7 +15,8 @@ void PlannerConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("branch_decay", branch_decay, "of the utility along a branch [1/cells]");
   visitor.Field("keep_goal", keep_goal, "how many times better another goal must be");
   visitor.Field("tour_samples", tour_samples, "set covers that are tried for each tour");
-  visitor.Field("oracle_restarts", oracle_restarts, "first routes that the oracle improves");
+  visitor.Field("oracle_trials", oracle_trials,
+                "changes of its route that the oracle tries at each decision");
 }
 
 void PlannerConfig::Validate(ConfigProblems& problems) const {
@@ -23,7 +24,7 @@ void PlannerConfig::Validate(ConfigProblems& problems) const {
   problems.Require(branch_decay >= 0.0, "planner.branch_decay", "must not be negative");
   problems.Require(keep_goal >= 1.0, "planner.keep_goal", "must be at least 1");
   problems.Require(tour_samples >= 1, "planner.tour_samples", "must be at least 1");
-  problems.Require(oracle_restarts >= 1, "planner.oracle_restarts", "must be at least 1");
+  problems.Require(oracle_trials >= 1, "planner.oracle_trials", "must be at least 1");
 }
 
 const std::vector<std::string>& PlannerNames() {

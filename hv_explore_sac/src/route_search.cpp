@@ -19,18 +19,30 @@ void Unite(CellSet& cells, const CellSet& added) {
 }  // namespace
 
 std::vector<int> RouteSearch::Plan(int start, const CellSet& known, std::vector<int> route,
-                                   int restarts) {
+                                   int trials) {
   start_ = start;
   known_ = known;
+  std::uniform_real_distribution<double> greed(0.4, 1.6);
+  Construct(route, greed(random_));
   double best = Improve(route);
-  for (int i = 0; i < restarts; ++i) {
-    std::uniform_real_distribution<double> greed(0.4, 1.6);
-    std::vector<int> other = Construct(greed(random_));
+  for (int i = 0; i < trials; ++i) {
+    std::vector<int> other = WithGap(route);
+    Construct(other, greed(random_));
     const double cost = Improve(other);
     if (cost >= best) continue;
     best = cost;
     route = std::move(other);
   }
+  return route;
+}
+
+/// The route without some consecutive stops, all of them now and then.
+std::vector<int> RouteSearch::WithGap(std::vector<int> route) {
+  if (route.empty()) return route;
+  std::uniform_int_distribution<std::size_t> place(0, route.size() - 1);
+  const auto [first, last] = std::minmax({place(random_), place(random_)});
+  route.erase(route.begin() + static_cast<std::ptrdiff_t>(first),
+              route.begin() + static_cast<std::ptrdiff_t>(last) + 1);
   return route;
 }
 
@@ -64,8 +76,7 @@ double RouteSearch::Cost(const std::vector<int>& route) {
 
 /// Adds the stop, at the best place, that shows most for its detour, until enough is seen. `greed`
 /// weighs the detour.
-std::vector<int> RouteSearch::Construct(double greed) {
-  std::vector<int> route;
+void RouteSearch::Construct(std::vector<int>& route, double greed) {
   while (Evaluate(route).missing > 0) {
     CellSet covered = known_;
     Cover(route, covered);
@@ -93,7 +104,6 @@ std::vector<int> RouteSearch::Construct(double greed) {
     if (best_stop < 0) break;
     route.insert(route.begin() + static_cast<std::ptrdiff_t>(best_place), best_stop);
   }
-  return route;
 }
 
 double RouteSearch::Improve(std::vector<int>& route) {

@@ -15,8 +15,9 @@ class RouteSearch {
       : knowledge_(knowledge), allowed_(allowed), random_(seed) {}
 
   /// Stops of a route from `start`, where `known` has been seen already; empty when nothing more is
-  /// needed. `route` is a first guess, which may be empty; `restarts` more are made.
-  std::vector<int> Plan(int start, const CellSet& known, std::vector<int> route, int restarts);
+  /// needed. `route` is a first guess, which may be empty; `trials` times a part of the
+  /// best one is given up and found anew.
+  std::vector<int> Plan(int start, const CellSet& known, std::vector<int> route, int trials);
 
  private:
   struct Value {
@@ -25,7 +26,8 @@ class RouteSearch {
   };
   Value Evaluate(const std::vector<int>& route);
   double Cost(const std::vector<int>& route);
-  std::vector<int> Construct(double greed);
+  void Construct(std::vector<int>& route, double greed);
+  std::vector<int> WithGap(std::vector<int> route);
   double Improve(std::vector<int>& route);
   bool DropStops(std::vector<int>& route, double& cost);
   bool MoveStops(std::vector<int>& route, double& cost);

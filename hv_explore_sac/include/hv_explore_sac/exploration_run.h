@@ -29,8 +29,8 @@ struct RunResult {
   Ending ending = Ending::kRunning;
   bool done = false;
   int interventions = 0;              ///< of the loop guard
-  double decision_ms = 0.0;           ///< mean time of a decision, observation included
-  double step_ms = 0.0;               ///< mean time of a step of the environment
+  double decision_ms = 0.0;           ///< mean processor time of a decision, observation included
+  double step_ms = 0.0;               ///< the same of a step of the environment
   std::vector<Eigen::Vector2i> path;  ///< cells
 };
 

@@ -18,7 +18,7 @@ struct PlannerConfig {
   double branch_decay = 0.02;   ///< the same along a branch [1/cells]
   double keep_goal = 1.1;       ///< another goal must be so many times better
   int tour_samples = 20;        ///< set covers that are tried for each tour
-  int oracle_restarts = 4;      ///< first routes that the oracle improves
+  int oracle_trials = 4;        ///< changes of its route that the oracle tries at each decision
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
