@@ -15,7 +15,6 @@ void PlannerConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("branch_decay", branch_decay, "of the utility along a branch [1/cells]");
   visitor.Field("keep_goal", keep_goal, "how many times better another goal must be");
   visitor.Field("tour_samples", tour_samples, "set covers that are tried for each tour");
-  visitor.Field("tour_decay", tour_decay, "of what discounted tours see [1/cells]");
   visitor.Field("oracle_trials", oracle_trials,
                 "changes of its route that the oracle tries at each decision");
 }
@@ -25,13 +24,12 @@ void PlannerConfig::Validate(ConfigProblems& problems) const {
   problems.Require(branch_decay >= 0.0, "planner.branch_decay", "must not be negative");
   problems.Require(keep_goal >= 1.0, "planner.keep_goal", "must be at least 1");
   problems.Require(tour_samples >= 1, "planner.tour_samples", "must be at least 1");
-  problems.Require(tour_decay > 0.0, "planner.tour_decay", "must be positive");
   problems.Require(oracle_trials >= 1, "planner.oracle_trials", "must be at least 1");
 }
 
 const std::vector<std::string>& PlannerNames() {
-  static const std::vector<std::string> names{"nearest", "utility",    "ratio", "tour",
-                                              "branch",  "discounted", "oracle"};
+  static const std::vector<std::string> names{"nearest", "utility", "ratio",
+                                              "tour",    "branch",  "oracle"};
   return names;
 }
 
@@ -55,8 +53,7 @@ std::unique_ptr<Planner> MakePlanner(const std::string& name, const PlannerInput
     };
     return std::make_unique<GoalPlanner>(score, config.keep_goal);
   }
-  if (name == "tour") return std::make_unique<TourPlanner>(config, 0.0);
-  if (name == "discounted") return std::make_unique<TourPlanner>(config, config.tour_decay);
+  if (name == "tour") return std::make_unique<TourPlanner>(config);
   if (name == "branch") return std::make_unique<BranchPlanner>(config);
   if (name == "oracle") return std::make_unique<OraclePlanner>(inputs);
   std::string known;

@@ -1,7 +1,6 @@
 #include "tour_planner.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "route.h"
@@ -11,12 +10,11 @@ namespace hv::explore {
 Decision TourPlanner::Choose(const Observation& observation, const ExplorationModel& model) {
   ListViews(observation, model);
   distances_.assign(observation.nodes.size(), {});
-  gain_.assign(observation.nodes.size(), 0.0);
   Tour best;
-  best.cost = std::numeric_limits<double>::infinity();
+  best.length = std::numeric_limits<double>::infinity();
   for (int i = 0; i < config_.tour_samples; ++i) {
-    Tour tour = BestTour(SampleCover(), observation, model);
-    if (tour.cost < best.cost) best = std::move(tour);
+    Tour tour = ShortTour(SampleCover(), observation, model);
+    if (tour.length < best.length) best = std::move(tour);
   }
   const int goal = best.stops.front();
   return {observation.FirstHopTo(goal), goal};
@@ -51,14 +49,13 @@ std::vector<int> TourPlanner::SampleCover() {
     std::discrete_distribution<std::size_t> draw(gains.begin(), gains.end());
     const std::size_t chosen = draw(random_);
     cover.push_back(candidates_[chosen]);
-    gain_[static_cast<std::size_t>(candidates_[chosen])] = gains[chosen];
     covered.insert(covered.end(), seen_[chosen].begin(), seen_[chosen].end());
     std::sort(covered.begin(), covered.end());
   }
 }
 
-TourPlanner::Tour TourPlanner::BestTour(std::vector<int> stops, const Observation& observation,
-                                        const ExplorationModel& model) {
+TourPlanner::Tour TourPlanner::ShortTour(std::vector<int> stops, const Observation& observation,
+                                         const ExplorationModel& model) {
   int last = Observation::kRobot;
   for (auto next = stops.begin(); next != stops.end(); ++next) {
     std::iter_swap(next, std::min_element(next, stops.end(), [&](int a, int b) {
@@ -68,28 +65,22 @@ TourPlanner::Tour TourPlanner::BestTour(std::vector<int> stops, const Observatio
     last = *next;
   }
   Tour tour;
-  tour.cost = ImproveOrder(
-      stops, [&](const std::vector<int>& route) { return CostOf(route, observation, model); });
+  tour.length = ImproveOrder(stops, [&](const std::vector<int>& route) {
+    double length = 0.0;
+    int from = Observation::kRobot;
+    for (const int stop : route) {
+      length += Between(from, stop, observation, model);
+      from = stop;
+    }
+    return length;
+  });
   tour.stops = std::move(stops);
   return tour;
 }
 
-double TourPlanner::CostOf(const std::vector<int>& route, const Observation& observation,
-                           const ExplorationModel& model) {
-  double length = 0.0;
-  double worth = 0.0;
-  int from = Observation::kRobot;
-  for (const int stop : route) {
-    length += Between(from, stop, observation, model);
-    worth += gain_[static_cast<std::size_t>(stop)] * std::exp(-decay_ * length);
-    from = stop;
-  }
-  return decay_ > 0.0 ? -worth : length;
-}
-
 double TourPlanner::Between(int from, int to, const Observation& observation,
                             const ExplorationModel& model) {
-  if (from == Observation::kRobot) return static_cast<double>(observation.node(to).distance);
+  if (from == Observation::kRobot) return observation.node(to).distance;
   std::vector<float>& distances = distances_[static_cast<std::size_t>(from)];
   if (distances.empty()) {
     search_.Run(model.graph(), observation.node(from).viewpoint);
@@ -97,7 +88,7 @@ double TourPlanner::Between(int from, int to, const Observation& observation,
       distances.push_back(search_.DistanceTo(node.viewpoint));
     }
   }
-  return static_cast<double>(distances[static_cast<std::size_t>(to)]);
+  return distances[static_cast<std::size_t>(to)];
 }
 
 }  // namespace hv::explore

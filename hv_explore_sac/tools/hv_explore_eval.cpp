@@ -36,9 +36,8 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--maps", arguments.maps,
                  "tiles text file, folder of PNG or PGM, or map_server YAML")
       ->required();
-  app.add_option(
-         "--planner", arguments.planners,
-         "sac, nearest, utility, ratio, branch, tour, discounted, oracle; several with commas")
+  app.add_option("--planner", arguments.planners,
+                 "sac, utility, nearest, ratio, tour, branch, oracle; several with commas")
       ->delimiter(',')
       ->required();
   app.add_option("--weights", arguments.weights, "of the planner `sac`");

@@ -18,7 +18,6 @@ struct PlannerConfig {
   double branch_decay = 0.02;   ///< the same along a branch [1/cells]
   double keep_goal = 1.1;       ///< another goal must be so many times better
   int tour_samples = 20;        ///< set covers that are tried for each tour
-  double tour_decay = 0.01;     ///< of what discounted tours see [1/cells]
   int oracle_trials = 4;        ///< changes of its route that the oracle tries at each decision
 
   void Describe(ConfigVisitor& visitor);
@@ -48,7 +47,7 @@ struct PlannerInputs {
   const ExplorationMap* map = nullptr;
 };
 
-/// nearest, utility, ratio, branch, tour, discounted, oracle.
+/// nearest, utility, ratio, tour, branch, oracle.
 const std::vector<std::string>& PlannerNames();
 
 /// Throws InputError that names the known planners for an unknown one.
