@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "hv_core/occupancy_grid.h"
+
+namespace hv::explore {
+
+/// What is known of a cell.
+enum class Cell : std::uint8_t { kUnknown, kFree, kOccupied };
+
+/// What is known of a place: a grid of cells that remembers which of them changed since the changes
+/// were last taken care of. Cells are named by coordinates or by index, rows of growing y, x
+/// fastest. Not thread-safe.
+class Belief {
+ public:
+  /// Every cell is unknown.
+  Belief(int width, int height);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int free_count() const { return free_count_; }
+
+  bool Contains(const Eigen::Vector2i& cell) const {
+    return cell.x() >= 0 && cell.y() >= 0 && cell.x() < width_ && cell.y() < height_;
+  }
+  int IndexOf(const Eigen::Vector2i& cell) const { return cell.y() * width_ + cell.x(); }
+  Eigen::Vector2i CellOf(int index) const { return {index % width_, index / width_}; }
+  Cell At(int index) const { return cells_[static_cast<std::size_t>(index)]; }
+  Cell At(const Eigen::Vector2i& cell) const { return At(IndexOf(cell)); }
+
+  void Set(int index, Cell cell) {
+    if (At(index) != cell) Change(index, cell);
+  }
+
+  /// Takes over a grid of the same size. Throws std::invalid_argument when the sizes differ.
+  void Assign(const OccupancyGrid& grid);
+
+  /// The first cell of the line from `from` to `to`, without `to`, that is not known to be free;
+  /// kNone when all are. Both ends must lie inside.
+  static constexpr int kNone = -1;
+  int FirstBlocked(const Eigen::Vector2i& from, const Eigen::Vector2i& to) const;
+
+  struct CellChange {
+    int index;
+    Cell before;
+    Cell after;
+  };
+  /// In the order of the changes; a cell may occur more than once.
+  const std::vector<CellChange>& changes() const { return changes_; }
+  /// Whether one of them was free and is no more.
+  bool lost_free() const { return lost_free_; }
+  void ClearChanges();
+
+ private:
+  void Change(int index, Cell cell);
+
+  int width_;
+  int height_;
+  int free_count_ = 0;
+  std::vector<Cell> cells_;
+  std::vector<CellChange> changes_;
+  bool lost_free_ = false;
+};
+
+}  // namespace hv::explore

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "hv_explore_sac/belief.h"
+#include "hv_explore_sac/exploration_config.h"
+#include "hv_explore_sac/frontiers.h"
+#include "hv_explore_sac/viewpoint_graph.h"
+
+namespace hv::explore {
+
+/// Which frontier points each viewpoint observes: those within range to which the line through the
+/// belief is free. Not thread-safe.
+class FrontierViews {
+ public:
+  explicit FrontierViews(const ViewpointConfig& config) : config_(config) {}
+
+  /// Follows the belief, the frontiers and the graph, all of which must have been updated before.
+  void Update(const Belief& belief, const Frontiers& frontiers, const ViewpointGraph& graph);
+
+  /// The points that a viewpoint observes.
+  void ListSeen(int viewpoint, std::vector<int>& points) const;
+  int CountSeen(int viewpoint) const { return seen_[static_cast<std::size_t>(viewpoint)]; }
+
+ private:
+  struct View {
+    int point;
+    int blocked;  ///< a cell in the way, or Belief::kNone
+  };
+  void Restart();
+  void Follow(int viewpoint, const Eigen::Vector2i& cell, const Belief& belief,
+              const Frontiers& frontiers);
+  void Look(int viewpoint, const Eigen::Vector2i& cell, const std::vector<int>& points,
+            const Belief& belief, const Frontiers& frontiers);
+
+  ViewpointConfig config_;
+  int renumberings_ = 0;
+  std::vector<std::vector<View>> views_;  ///< of each viewpoint: all points within range
+  std::vector<int> seen_;                 ///< of each viewpoint
+};
+
+}  // namespace hv::explore

@@ -1,0 +1,137 @@
+#include "hv_explore_sac/viewpoint_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace hv::explore {
+
+ViewpointGraph::ViewpointGraph(const ViewpointConfig& config, const Belief& belief)
+    : config_(config),
+      width_(belief.width()),
+      on_lattice_(Index(belief.width() * belief.height()), 0),
+      viewpoint_at_(on_lattice_.size(), -1) {
+  PlaceLattice(belief);
+  Rebuild(belief);
+}
+
+void ViewpointGraph::Update(const Belief& belief) {
+  if (belief.lost_free()) {
+    Rebuild(belief);
+    ++renumberings_;
+    return;
+  }
+  RecheckEdges(belief);
+  for (const Belief::CellChange& change : belief.changes()) {
+    if (on_lattice_[Index(change.index)] == 0 || belief.At(change.index) != Cell::kFree) continue;
+    Add(belief.CellOf(change.index), belief);
+  }
+  for (int viewpoint = 0; viewpoint < size(); ++viewpoint) ListEdges(viewpoint);
+}
+
+int ViewpointGraph::Add(const Eigen::Vector2i& cell, const Belief& belief) {
+  const int known = At(cell);
+  if (known >= 0) return known;
+  const int viewpoint = Insert(cell, belief);
+  for (int other = 0; other < size(); ++other) ListEdges(other);
+  return viewpoint;
+}
+
+int ViewpointGraph::At(const Eigen::Vector2i& cell) const {
+  return viewpoint_at_[Index(cell.y() * width_ + cell.x())];
+}
+
+void ViewpointGraph::PlaceLattice(const Belief& belief) {
+  for (int row = 0;; ++row) {
+    const long y = std::lround(row * config_.spacing_y);
+    if (y >= belief.height()) return;
+    for (int column = 0;; ++column) {
+      const long x = std::lround(column * config_.spacing_x);
+      if (x >= belief.width()) break;
+      on_lattice_[Index(static_cast<int>(y) * width_ + static_cast<int>(x))] = 1;
+    }
+  }
+}
+
+void ViewpointGraph::Rebuild(const Belief& belief) {
+  const std::vector<Eigen::Vector2i> old_cells = std::move(cells_);
+  const std::vector<char> old_visited = std::move(visited_);
+  std::fill(viewpoint_at_.begin(), viewpoint_at_.end(), -1);
+  cells_.clear();
+  visited_.clear();
+  nearest_.clear();
+  edges_.clear();
+  stale_.clear();
+  // Places that were added stay, and so does what was visited.
+  for (std::size_t i = 0; i < old_cells.size(); ++i) {
+    if (belief.At(old_cells[i]) != Cell::kFree) continue;
+    const int viewpoint = Insert(old_cells[i], belief);
+    visited_[Index(viewpoint)] = old_visited[i];
+  }
+  for (int cell = 0; cell < static_cast<int>(on_lattice_.size()); ++cell) {
+    if (on_lattice_[Index(cell)] == 0 || belief.At(cell) != Cell::kFree) continue;
+    if (viewpoint_at_[Index(cell)] < 0) Insert(belief.CellOf(cell), belief);
+  }
+  for (int viewpoint = 0; viewpoint < size(); ++viewpoint) ListEdges(viewpoint);
+}
+
+int ViewpointGraph::Insert(const Eigen::Vector2i& cell, const Belief& belief) {
+  const int viewpoint = size();
+  const int place = belief.IndexOf(cell);
+  viewpoint_at_[Index(place)] = viewpoint;
+  cells_.push_back(cell);
+  visited_.push_back(0);
+  nearest_.emplace_back().reserve(Index(config_.neighbors + 1));
+  edges_.emplace_back();
+  stale_.push_back(1);
+  for (int other = 0; other < viewpoint; ++other) {
+    const int distance2 = (cells_[Index(other)] - cell).squaredNorm();
+    Offer(viewpoint, {distance2, belief.IndexOf(cells_[Index(other)]), other, 0}, belief);
+    Offer(other, {distance2, place, viewpoint, 0}, belief);
+  }
+  return viewpoint;
+}
+
+void ViewpointGraph::Offer(int viewpoint, Neighbor neighbor, const Belief& belief) {
+  std::vector<Neighbor>& nearest = nearest_[Index(viewpoint)];
+  const auto nearer = [](const Neighbor& a, const Neighbor& b) {
+    return std::pair(a.distance2, a.place) < std::pair(b.distance2, b.place);
+  };
+  const bool full = nearest.size() >= Index(config_.neighbors);
+  if (full && !nearer(neighbor, nearest.back())) return;
+  neighbor.blocked = BlockedBetween(viewpoint, neighbor.viewpoint, belief);
+  if (full) nearest.pop_back();
+  nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), neighbor, nearer), neighbor);
+  stale_[Index(viewpoint)] = 1;
+}
+
+void ViewpointGraph::RecheckEdges(const Belief& belief) {
+  for (int viewpoint = 0; viewpoint < size(); ++viewpoint) {
+    for (Neighbor& neighbor : nearest_[Index(viewpoint)]) {
+      if (neighbor.blocked == Belief::kNone || belief.At(neighbor.blocked) != Cell::kFree) continue;
+      neighbor.blocked = BlockedBetween(viewpoint, neighbor.viewpoint, belief);
+      if (neighbor.blocked == Belief::kNone) stale_[Index(viewpoint)] = 1;
+    }
+  }
+}
+
+void ViewpointGraph::ListEdges(int viewpoint) {
+  if (stale_[Index(viewpoint)] == 0) return;
+  stale_[Index(viewpoint)] = 0;
+  std::vector<Edge>& edges = edges_[Index(viewpoint)];
+  edges.clear();
+  for (const Neighbor& neighbor : nearest_[Index(viewpoint)]) {
+    if (neighbor.blocked != Belief::kNone) continue;
+    edges.push_back({neighbor.viewpoint, std::sqrt(static_cast<float>(neighbor.distance2))});
+  }
+}
+
+int ViewpointGraph::BlockedBetween(int first, int second, const Belief& belief) const {
+  // Always in the same direction: the line back passes other cells.
+  const Eigen::Vector2i& a = cells_[Index(first)];
+  const Eigen::Vector2i& b = cells_[Index(second)];
+  return belief.IndexOf(a) < belief.IndexOf(b) ? belief.FirstBlocked(a, b)
+                                               : belief.FirstBlocked(b, a);
+}
+
+}  // namespace hv::explore

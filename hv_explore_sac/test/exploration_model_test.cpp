@@ -1,0 +1,181 @@
+#include "hv_explore_sac/exploration_model.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "hv_explore_sac/ray_sensor.h"
+#include "random_maps.h"
+
+namespace hv::explore {
+namespace {
+
+using Place = std::pair<int, int>;
+
+Place PlaceOf(const Eigen::Vector2i& cell) { return {cell.x(), cell.y()}; }
+
+std::set<int> Sorted(const std::vector<int>& values) { return {values.begin(), values.end()}; }
+
+/// Edges and what is seen, by place, so that the numbers of viewpoints do not matter.
+struct Contents {
+  std::map<Place, std::set<std::pair<Place, float>>> edges;
+  std::map<Place, std::set<int>> seen;
+};
+
+Contents ContentsOf(const ViewpointGraph& graph, const FrontierViews& views) {
+  Contents contents;
+  std::vector<int> points;
+  for (int viewpoint = 0; viewpoint < graph.size(); ++viewpoint) {
+    const Place place = PlaceOf(graph.CellOf(viewpoint));
+    auto& edges = contents.edges[place];
+    for (const ViewpointGraph::Edge& edge : graph.EdgesOf(viewpoint)) {
+      edges.insert({PlaceOf(graph.CellOf(edge.to)), edge.length});
+    }
+    views.ListSeen(viewpoint, points);
+    contents.seen[place] = Sorted(points);
+  }
+  return contents;
+}
+
+/// The same as `model`, made from its belief at once.
+void ExpectEqualToScratch(const ExplorationModel& model, const ExplorationConfig& config,
+                          const std::vector<Eigen::Vector2i>& added) {
+  const Belief& belief = model.belief();
+  const Frontiers frontiers(config.frontier, belief);
+  EXPECT_EQ(Sorted(model.frontiers().points()), Sorted(frontiers.points()));
+  ViewpointGraph graph(config.viewpoint, belief);
+  for (const Eigen::Vector2i& cell : added) {
+    if (belief.At(cell) == Cell::kFree) graph.Add(cell, belief);
+  }
+  FrontierViews views(config.viewpoint);
+  views.Update(belief, frontiers, graph);
+  const Contents expected = ContentsOf(graph, views);
+  const Contents actual = ContentsOf(model.graph(), model.views());
+  EXPECT_EQ(actual.edges, expected.edges);
+  EXPECT_EQ(actual.seen, expected.seen);
+}
+
+class Increments : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Increments, EqualRecomputationWhileSensing) {
+  const ExplorationConfig config;
+  const RaySensor sensor(config.simulation);
+  const ExplorationMap map = RandomMap(GetParam());
+  ExplorationModel model(config, map.width, map.height);
+  std::mt19937 random(GetParam());
+  std::vector<Eigen::Vector2i> stood;
+  Eigen::Vector2i at = map.start;
+  for (int step = 0; step < 8; ++step) {
+    sensor.Sense(map, at, model.belief());
+    model.Update(at);
+    stood.push_back(at);
+    ExpectEqualToScratch(model, config, stood);
+    const auto& edges = model.graph().EdgesOf(model.robot());
+    ASSERT_FALSE(edges.empty());
+    const auto next = std::uniform_int_distribution<std::size_t>(0, edges.size() - 1)(random);
+    at = Eigen::Vector2i(model.graph().CellOf(edges[next].to));
+  }
+}
+
+TEST_P(Increments, EqualRecomputationWhenCellsChangeAnyWay) {
+  const ExplorationConfig config;
+  ExplorationModel model(config, 120, 100);
+  std::mt19937 random(GetParam());
+  std::uniform_int_distribution<int> corner_x(0, 119);
+  std::uniform_int_distribution<int> corner_y(0, 99);
+  std::uniform_int_distribution<int> kind(0, 5);
+  const Eigen::Vector2i stand(50, 50);
+  for (int step = 0; step < 12; ++step) {
+    const Eigen::Array2i low(corner_x(random), corner_y(random));
+    const int drawn = kind(random);
+    const Cell cell = drawn == 0 ? Cell::kUnknown : drawn == 1 ? Cell::kOccupied : Cell::kFree;
+    for (int y = low.y(); y < std::min(100, low.y() + 40); ++y) {
+      for (int x = low.x(); x < std::min(120, low.x() + 40); ++x) {
+        model.belief().Set(model.belief().IndexOf({x, y}), cell);
+      }
+    }
+    model.belief().Set(model.belief().IndexOf(stand), Cell::kFree);
+    model.Update(stand);
+    ExpectEqualToScratch(model, config, {stand});
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Maps, Increments, testing::Range(1U, 7U));
+
+TEST(ViewpointGraphTest, EdgesAreFreeFewAndSorted) {
+  const ExplorationConfig config;
+  const ExplorationMap map = RandomMap(11);
+  ExplorationModel model(config, map.width, map.height);
+  RaySensor(config.simulation).Sense(map, map.start, model.belief());
+  model.Update(map.start);
+  const ViewpointGraph& graph = model.graph();
+  for (int viewpoint = 0; viewpoint < graph.size(); ++viewpoint) {
+    const auto& edges = graph.EdgesOf(viewpoint);
+    EXPECT_LE(edges.size(), static_cast<std::size_t>(config.viewpoint.neighbors));
+    EXPECT_TRUE(std::is_sorted(edges.begin(), edges.end(),
+                               [](const auto& a, const auto& b) { return a.length < b.length; }));
+    for (const ViewpointGraph::Edge& edge : edges) {
+      const Eigen::Vector2i& from = graph.CellOf(viewpoint);
+      const Eigen::Vector2i& to = graph.CellOf(edge.to);
+      EXPECT_FLOAT_EQ(edge.length, (to - from).cast<float>().norm());
+      // Every point of the segment lies in a cell that is free or touches one.
+      for (double share = 0.0; share <= 1.0; share += 0.01) {
+        const Eigen::Vector2i cell =
+            (from.cast<double>() + share * (to - from).cast<double>()).array().round().cast<int>();
+        bool free = false;
+        for (int i = 0; i < 9; ++i) {
+          const Eigen::Vector2i near = cell + Eigen::Vector2i(i % 3 - 1, i / 3 - 1);
+          free |= model.belief().Contains(near) && model.belief().At(near) == Cell::kFree;
+        }
+        EXPECT_TRUE(free);
+      }
+    }
+  }
+}
+
+TEST(ObservationTest, DistancesAndPredecessorsBelongTogether) {
+  const ExplorationConfig config;
+  const ExplorationMap map = RandomMap(12);
+  ExplorationModel model(config, map.width, map.height);
+  RaySensor(config.simulation).Sense(map, map.start, model.belief());
+  model.Update(map.start);
+  Observation observation;
+  model.Observe(observation);
+  ASSERT_GT(observation.size(), 5);
+  EXPECT_EQ(observation.node(Observation::kRobot).viewpoint, model.robot());
+  EXPECT_EQ(observation.history, std::vector<int>{Observation::kRobot});
+  for (int i = 1; i < observation.size(); ++i) {
+    const Observation::Node& node = observation.node(i);
+    ASSERT_LT(node.predecessor, i);
+    const auto edges = observation.EdgesOf(node.predecessor);
+    const auto edge =
+        std::find_if(edges.begin(), edges.end(), [i](const auto& each) { return each.to == i; });
+    ASSERT_NE(edge, edges.end());
+    EXPECT_FLOAT_EQ(node.distance, observation.node(node.predecessor).distance + edge->length);
+    EXPECT_GE(node.distance, node.position.norm() * 0.9999F);
+    const auto actions = observation.Actions();
+    EXPECT_TRUE(std::any_of(actions.begin(), actions.end(), [&](const auto& action) {
+      return action.to == observation.FirstHopTo(i);
+    }));
+  }
+}
+
+TEST(ObservationTest, RemembersTheLastViewpoints) {
+  const ExplorationConfig config;
+  ExplorationModel model(config, 200, 200);
+  for (int cell = 0; cell < 200 * 200; ++cell) model.belief().Set(cell, Cell::kFree);
+  for (int i = 0; i < 50; ++i) model.Update({2 * i + 1, 3});
+  Observation observation;
+  model.Observe(observation);
+  ASSERT_EQ(observation.history.size(), Observation::kHistory);
+  const int oldest = observation.node(observation.history.front()).viewpoint;
+  EXPECT_EQ(model.graph().CellOf(oldest), Eigen::Vector2i(2 * 18 + 1, 3));
+  EXPECT_EQ(observation.history.back(), Observation::kRobot);
+}
+
+}  // namespace
+}  // namespace hv::explore
