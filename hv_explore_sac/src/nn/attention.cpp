@@ -41,7 +41,7 @@ void NeighbourAttention<Scalar>::Backward(const Backprop<Scalar>& pass, const Sa
   const View<Scalar> d_q = pass.arena.TakeZero(saved.q.rows, saved.q.cols);
   const View<Scalar> d_kv = pass.arena.TakeZero(saved.kv.rows, saved.kv.cols);
   const AttentionInput<Scalar> attention{saved.input.lists, heads_, saved.q, saved.kv};
-  AttentionBackward<Scalar>(attention, d_mixed, saved.weights, d_q, d_kv);
+  AttentionBackward<Scalar>(attention, saved.mixed, d_mixed, saved.weights, {d_q, d_kv});
   AddTransposedProduct<Scalar>(saved.input.edges, saved.weights, edge_bias_.In(pass.gradient));
   query_.Backward(pass, saved.input.queries, d_q, d_queries);
   key_value_.Backward(pass, saved.input.memory, d_kv, d_memory);

@@ -10,9 +10,9 @@ HV_INLINE std::ptrdiff_t DepthOf(const AttentionTask<Scalar>& task) {
 
 template <typename Scalar>
 HV_INLINE Scalar Dot(const Scalar* a, const Scalar* b, std::ptrdiff_t size) {
-  using Loose = typename Lanes<Scalar>::Loose;
-  constexpr std::ptrdiff_t kLanes = Lanes<Scalar>::kCount;
-  typename Lanes<Scalar>::Type lanes = {};
+  using Loose = typename Lanes<Scalar, kVectorBytes>::Loose;
+  constexpr std::ptrdiff_t kLanes = Lanes<Scalar, kVectorBytes>::kCount;
+  typename Lanes<Scalar, kVectorBytes>::Type lanes = {};
   std::ptrdiff_t i = 0;
   for (; i + kLanes <= size; i += kLanes) {
     lanes += *reinterpret_cast<const Loose*>(a + i) * *reinterpret_cast<const Loose*>(b + i);
@@ -31,8 +31,8 @@ HV_INLINE Scalar Dot(const Scalar* a, const Scalar* b, std::ptrdiff_t size) {
 /// y += factor x
 template <typename Scalar>
 HV_INLINE void AddScaled(Scalar factor, const Scalar* x, Scalar* y, std::ptrdiff_t size) {
-  using Loose = typename Lanes<Scalar>::Loose;
-  constexpr std::ptrdiff_t kLanes = Lanes<Scalar>::kCount;
+  using Loose = typename Lanes<Scalar, kVectorBytes>::Loose;
+  constexpr std::ptrdiff_t kLanes = Lanes<Scalar, kVectorBytes>::kCount;
   std::ptrdiff_t i = 0;
   for (; i + kLanes <= size; i += kLanes) {
     *reinterpret_cast<Loose*>(y + i) += factor * *reinterpret_cast<const Loose*>(x + i);
@@ -71,49 +71,25 @@ void MixOfHeads(const AttentionTask<Scalar>& task, const Scalar* weights, Scalar
   }
 }
 
-/// Gradient of the scores of one query from that of its mixed values: through the mixing, then
-/// through the softmax, d_score = w (d_w - sum_e w d_w).
+/// Backward through mixing and softmax at once: d_score = w (d_w - sum_e w d_w), and that sum is
+/// <d_out, out>, so each edge is visited once.
 template <std::ptrdiff_t kDepth, typename Scalar>
-HV_INLINE void ScoreGradient(const AttentionTask<Scalar>& task, std::ptrdiff_t i,
-                             std::ptrdiff_t h, const Scalar* d_mixed, Scalar* weights,
-                             Scalar* d_kv) {
-  const std::ptrdiff_t depth = DepthOf<kDepth>(task);
-  const std::ptrdiff_t width = task.heads * depth;
-  constexpr std::ptrdiff_t kBuffer = 64;
-  Scalar buffer[kBuffer];
-  Scalar mean = 0;
-  const std::ptrdiff_t first = task.start[i];
-  const std::ptrdiff_t last = task.start[i + 1];
-  for (std::ptrdiff_t e = first; e < last; ++e) {
-    const std::ptrdiff_t value = (task.neighbour[e] * 2 + 1) * width + h * depth;
-    const Scalar weight = weights[e * task.heads + h];
-    const Scalar d_weight = Dot(d_mixed, task.kv + value, depth);
-    if (e - first < kBuffer) buffer[e - first] = d_weight;
-    mean += weight * d_weight;
-    AddScaled(weight, d_mixed, d_kv + value, depth);
-  }
-  for (std::ptrdiff_t e = first; e < last; ++e) {
-    const std::ptrdiff_t value = (task.neighbour[e] * 2 + 1) * width + h * depth;
-    const Scalar d_weight =
-        e - first < kBuffer ? buffer[e - first] : Dot(d_mixed, task.kv + value, depth);
-    weights[e * task.heads + h] *= d_weight - mean;
-  }
-}
-
-template <std::ptrdiff_t kDepth, typename Scalar>
-void BackwardOfHeads(const AttentionTask<Scalar>& task, const Scalar* d_out, Scalar* weights,
-                     Scalar* d_q, Scalar* d_kv) {
+void BackwardOfHeads(const AttentionTask<Scalar>& task, const AttentionGradient<Scalar>& gradient) {
   const std::ptrdiff_t depth = DepthOf<kDepth>(task);
   const std::ptrdiff_t width = task.heads * depth;
   for (std::ptrdiff_t i = 0; i < task.rows; ++i) {
     for (std::ptrdiff_t h = 0; h < task.heads; ++h) {
       const std::ptrdiff_t at = i * width + h * depth;
-      ScoreGradient<kDepth>(task, i, h, d_out + at, weights, d_kv);
+      const Scalar* const d_out = gradient.d_out + at;
+      const Scalar mean = Dot(d_out, gradient.out + at, depth);
       for (std::ptrdiff_t e = task.start[i]; e < task.start[i + 1]; ++e) {
         const std::ptrdiff_t key = task.neighbour[e] * 2 * width + h * depth;
-        const Scalar d_score = task.scale * weights[e * task.heads + h];
-        AddScaled(d_score, task.kv + key, d_q + at, depth);
-        AddScaled(d_score, task.q + at, d_kv + key, depth);
+        const std::ptrdiff_t value = key + width;
+        Scalar& weight = gradient.weights[e * task.heads + h];
+        AddScaled(weight, d_out, gradient.d_kv + value, depth);
+        weight *= Dot(d_out, task.kv + value, depth) - mean;
+        AddScaled(task.scale * weight, task.kv + key, gradient.d_q + at, depth);
+        AddScaled(task.scale * weight, task.q + at, gradient.d_kv + key, depth);
       }
     }
   }
@@ -142,32 +118,54 @@ HV_INLINE float Exp(float x) {
 }
 HV_INLINE double Exp(double x) { return __builtin_exp(x); }
 
+/// Takes the largest score of each of kHeads heads, from `head` on, off the scores of a query.
+template <int kHeads, typename Scalar>
+HV_INLINE void TakeOffLargest(const AttentionTask<Scalar>& task, std::ptrdiff_t i,
+                              std::ptrdiff_t head, Scalar* scores) {
+  Scalar* const first = scores + task.start[i] * task.heads + head;
+  Scalar* const last = scores + task.start[i + 1] * task.heads + head;
+  Scalar largest[kHeads];
+  for (int h = 0; h < kHeads; ++h) largest[h] = first[h];
+  for (const Scalar* score = first; score < last; score += task.heads) {
+    for (int h = 0; h < kHeads; ++h) largest[h] = score[h] > largest[h] ? score[h] : largest[h];
+  }
+  for (Scalar* score = first; score < last; score += task.heads) {
+    for (int h = 0; h < kHeads; ++h) score[h] -= largest[h];
+  }
+}
+
+/// Divides by the sum of each of kHeads heads.
+template <int kHeads, typename Scalar>
+HV_INLINE void DivideBySum(const AttentionTask<Scalar>& task, std::ptrdiff_t i, std::ptrdiff_t head,
+                           Scalar* scores) {
+  Scalar* const first = scores + task.start[i] * task.heads + head;
+  Scalar* const last = scores + task.start[i + 1] * task.heads + head;
+  Scalar factor[kHeads] = {};
+  for (const Scalar* score = first; score < last; score += task.heads) {
+    for (int h = 0; h < kHeads; ++h) factor[h] += score[h];
+  }
+  for (int h = 0; h < kHeads; ++h) factor[h] = 1 / factor[h];
+  for (Scalar* score = first; score < last; score += task.heads) {
+    for (int h = 0; h < kHeads; ++h) score[h] *= factor[h];
+  }
+}
+
 /// Softmax over the neighbours of each query, head by head, in place.
 template <typename Scalar>
 void SoftmaxLoop(const AttentionTask<Scalar>& task, Scalar* scores) {
-  const std::ptrdiff_t heads = task.heads;
+  constexpr int kGroup = 4;
   for (std::ptrdiff_t i = 0; i < task.rows; ++i) {
-    for (std::ptrdiff_t h = 0; h < heads; ++h) {
-      const std::ptrdiff_t first = task.start[i] * heads + h;
-      const std::ptrdiff_t last = task.start[i + 1] * heads + h;
-      Scalar largest = scores[first];
-      for (std::ptrdiff_t e = first; e < last; e += heads) {
-        largest = scores[e] > largest ? scores[e] : largest;
-      }
-      for (std::ptrdiff_t e = first; e < last; e += heads) scores[e] -= largest;
-    }
+    std::ptrdiff_t head = 0;
+    for (; head + kGroup <= task.heads; head += kGroup)
+      TakeOffLargest<kGroup>(task, i, head, scores);
+    for (; head < task.heads; ++head) TakeOffLargest<1>(task, i, head, scores);
   }
-  const std::ptrdiff_t count = task.start[task.rows] * heads;
+  const std::ptrdiff_t count = task.start[task.rows] * task.heads;
   for (std::ptrdiff_t e = 0; e < count; ++e) scores[e] = Exp(scores[e]);
   for (std::ptrdiff_t i = 0; i < task.rows; ++i) {
-    for (std::ptrdiff_t h = 0; h < heads; ++h) {
-      const std::ptrdiff_t first = task.start[i] * heads + h;
-      const std::ptrdiff_t last = task.start[i + 1] * heads + h;
-      Scalar sum = 0;
-      for (std::ptrdiff_t e = first; e < last; e += heads) sum += scores[e];
-      const Scalar inverse = 1 / sum;
-      for (std::ptrdiff_t e = first; e < last; e += heads) scores[e] *= inverse;
-    }
+    std::ptrdiff_t head = 0;
+    for (; head + kGroup <= task.heads; head += kGroup) DivideBySum<kGroup>(task, i, head, scores);
+    for (; head < task.heads; ++head) DivideBySum<1>(task, i, head, scores);
   }
 }
 
@@ -184,10 +182,7 @@ void MixLoop(const AttentionTask<Scalar>& task, const Scalar* weights, Scalar* o
 }
 
 template <typename Scalar>
-void BackwardLoop(const AttentionTask<Scalar>& task, const Scalar* d_out, Scalar* weights,
-                  Scalar* d_q, Scalar* d_kv) {
-  if (task.depth == kUsualDepth) {
-    return BackwardOfHeads<kUsualDepth>(task, d_out, weights, d_q, d_kv);
-  }
-  BackwardOfHeads<0>(task, d_out, weights, d_q, d_kv);
+void BackwardLoop(const AttentionTask<Scalar>& task, const AttentionGradient<Scalar>& gradient) {
+  if (task.depth == kUsualDepth) return BackwardOfHeads<kUsualDepth>(task, gradient);
+  BackwardOfHeads<0>(task, gradient);
 }

@@ -30,9 +30,9 @@ View<Scalar> PointerDecoder<Scalar>::Forward(const Scalar* parameters, Arena<Sca
   Relu(saved.hidden);
   const View<Scalar> scores = arena.Take(input.action_count, score_.cols);
   for (Index output = 0; output < score_.cols; ++output) {
-    scores.matrix().col(output) =
-        saved.hidden.matrix().middleCols(output * width_, width_).lazyProduct(
-            score_.In(parameters).matrix().col(output));
+    scores.matrix().col(output) = saved.hidden.matrix()
+                                      .middleCols(output * width_, width_)
+                                      .lazyProduct(score_.In(parameters).matrix().col(output));
     scores.matrix().col(output).array() += score_bias_.In(parameters).data[output];
   }
   return scores;

@@ -137,8 +137,8 @@ GraphLevel Coarsen(GraphLevel& fine, const Eigen::RowVector2f& centre) {
 
 GraphSample BuildSample(const GraphInput& input, int coarser_levels) {
   Check(input);
-  GraphSample sample{input.features, {}, input.current, input.actions, input.history,
-                     input.globals};
+  GraphSample sample{input.features, {},           input.current, input.actions,
+                     input.history,  input.globals};
   sample.levels.push_back(FinestLevel(input));
   const Eigen::RowVector2f centre = input.positions.row(input.current);
   for (int level = 0; level < coarser_levels; ++level) {

@@ -36,15 +36,24 @@ struct AttentionTask {
   const Scalar* kv;
 };
 
+/// `weights` become the gradient of the scores; `d_q` and `d_kv` are added to.
+template <typename Scalar>
+struct AttentionGradient {
+  const Scalar* out;
+  const Scalar* d_out;
+  Scalar* weights;
+  Scalar* d_q;
+  Scalar* d_kv;
+};
+
 template <typename Scalar>
 struct KernelTable {
   void (*add_product)(const ProductTask<Scalar>& task);
   void (*attention_scores)(const AttentionTask<Scalar>& task, Scalar* scores);
   void (*softmax)(const AttentionTask<Scalar>& task, Scalar* scores);
   void (*mix_values)(const AttentionTask<Scalar>& task, const Scalar* weights, Scalar* out);
-  /// Turns `weights` into the gradient of the scores, adds to `d_q` and `d_kv`.
-  void (*attention_backward)(const AttentionTask<Scalar>& task, const Scalar* d_out,
-                             Scalar* weights, Scalar* d_q, Scalar* d_kv);
+  void (*attention_backward)(const AttentionTask<Scalar>& task,
+                             const AttentionGradient<Scalar>& gradient);
 };
 
 template <typename Scalar>

@@ -19,8 +19,7 @@ bool HasFma() {
 template <typename Scalar>
 const KernelTable<Scalar>& Kernels() {
 #ifdef HV_FMA_KERNELS
-  static const KernelTable<Scalar> table =
-      HasFma() ? FmaKernels<Scalar>() : PlainKernels<Scalar>();
+  static const KernelTable<Scalar> table = HasFma() ? FmaKernels<Scalar>() : PlainKernels<Scalar>();
 #else
   static const KernelTable<Scalar> table = PlainKernels<Scalar>();
 #endif
@@ -64,21 +63,22 @@ void MixValues(const AttentionInput<Scalar>& input, View<const Scalar> weights, 
 }
 
 template <typename Scalar>
-void AttentionBackward(const AttentionInput<Scalar>& input, View<const Scalar> d_out,
-                       View<Scalar> weights, View<Scalar> d_q, View<Scalar> d_kv) {
-  Kernels<Scalar>().attention_backward(TaskOf(input), d_out.data, weights.data, d_q.data,
-                                       d_kv.data);
+void AttentionBackward(const AttentionInput<Scalar>& input, View<const Scalar> out,
+                       View<const Scalar> d_out, View<Scalar> weights,
+                       const QueryMemory<Scalar>& gradient) {
+  Kernels<Scalar>().attention_backward(
+      TaskOf(input), {out.data, d_out.data, weights.data, gradient.q.data, gradient.kv.data});
 }
 
 const char* KernelSet() { return HasFma() ? "avx2+fma" : "plain"; }
 
-#define HV_INSTANTIATE(Scalar)                                                                   \
-  template void AddProduct(View<const Scalar>, View<const Scalar>, View<Scalar>);                \
-  template void AddTransposedProduct(View<const Scalar>, View<const Scalar>, View<Scalar>);      \
-  template void AttentionWeights(const AttentionInput<Scalar>&, View<Scalar>);                   \
-  template void MixValues(const AttentionInput<Scalar>&, View<const Scalar>, View<Scalar>);      \
-  template void AttentionBackward(const AttentionInput<Scalar>&, View<const Scalar>, View<Scalar>, \
-                                  View<Scalar>, View<Scalar>);
+#define HV_INSTANTIATE(Scalar)                                                              \
+  template void AddProduct(View<const Scalar>, View<const Scalar>, View<Scalar>);           \
+  template void AddTransposedProduct(View<const Scalar>, View<const Scalar>, View<Scalar>); \
+  template void AttentionWeights(const AttentionInput<Scalar>&, View<Scalar>);              \
+  template void MixValues(const AttentionInput<Scalar>&, View<const Scalar>, View<Scalar>); \
+  template void AttentionBackward(const AttentionInput<Scalar>&, View<const Scalar>,        \
+                                  View<const Scalar>, View<Scalar>, const QueryMemory<Scalar>&);
 HV_INSTANTIATE(float)
 HV_INSTANTIATE(double)
 #undef HV_INSTANTIATE

@@ -13,8 +13,7 @@ Linear<Scalar>::Linear(ParameterLayout& layout, const std::string& name, Index i
       bias_(layout.Add(name + ".bias", 1, outputs, Init::kZero)) {}
 
 template <typename Scalar>
-void Linear<Scalar>::Forward(const Scalar* parameters, View<const Scalar> x,
-                             View<Scalar> y) const {
+void Linear<Scalar>::Forward(const Scalar* parameters, View<const Scalar> x, View<Scalar> y) const {
   y.matrix().rowwise() = bias_.In(parameters).matrix().row(0);
   AddProduct<Scalar>(x, weight_.In(parameters), y);
 }

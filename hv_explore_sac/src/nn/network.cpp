@@ -113,9 +113,10 @@ void Network<Scalar>::Import(const GraphSample& sample, Workspace& workspace) co
 }
 
 template <typename Scalar>
-typename PointerDecoder<Scalar>::Input Network<Scalar>::DecoderInput(
-    const GraphSample& sample, View<const Scalar> nodes, View<const Scalar> memory,
-    Workspace& workspace) const {
+typename PointerDecoder<Scalar>::Input Network<Scalar>::DecoderInput(const GraphSample& sample,
+                                                                     View<const Scalar> nodes,
+                                                                     View<const Scalar> memory,
+                                                                     Workspace& workspace) const {
   const Index count = sample.nodes();
   workspace.all_nodes.resize(static_cast<std::size_t>(count));
   std::iota(workspace.all_nodes.begin(), workspace.all_nodes.end(), 0);

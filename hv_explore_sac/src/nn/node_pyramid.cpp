@@ -82,9 +82,8 @@ void NodePyramid<Scalar>::Fuse(const Scalar* parameters, Arena<Scalar>& arena,
 }
 
 template <typename Scalar>
-void NodePyramid<Scalar>::FuseBackward(const Backprop<Scalar>& pass,
-                                       const LevelView<Scalar>& fine, std::size_t level,
-                                       const Saved& saved, View<Scalar> d_fine,
+void NodePyramid<Scalar>::FuseBackward(const Backprop<Scalar>& pass, const LevelView<Scalar>& fine,
+                                       std::size_t level, const Saved& saved, View<Scalar> d_fine,
                                        View<Scalar> d_coarse) const {
   const typename Arena<Scalar>::Scope scope(pass.arena);
   const Scale& scale = saved.scales[level];
@@ -99,8 +98,8 @@ void NodePyramid<Scalar>::FuseBackward(const Backprop<Scalar>& pass,
 
 template <typename Scalar>
 void NodePyramid<Scalar>::Backward(const Backprop<Scalar>& pass,
-                                   const std::vector<LevelView<Scalar>>& levels,
-                                   const Saved& saved, View<Scalar> d_x) const {
+                                   const std::vector<LevelView<Scalar>>& levels, const Saved& saved,
+                                   View<Scalar> d_x) const {
   constexpr std::size_t kMostLevels = 8;
   View<Scalar> d[kMostLevels + 1];
   const typename Arena<Scalar>::Scope scope(pass.arena);

@@ -9,23 +9,22 @@ constexpr int kVectorBytes = 16;
 #endif
 
 /// The numbers of one vector register, and the same lying anywhere in memory.
-template <typename Scalar>
+template <typename Scalar, int kBytes>
 struct Lanes {
-  typedef Scalar Type __attribute__((vector_size(kVectorBytes)));
-  typedef Scalar Loose
-      __attribute__((vector_size(kVectorBytes), aligned(sizeof(Scalar)), may_alias));
-  static constexpr std::ptrdiff_t kCount = kVectorBytes / sizeof(Scalar);
+  typedef Scalar Type __attribute__((vector_size(kBytes)));
+  typedef Scalar Loose __attribute__((vector_size(kBytes), aligned(sizeof(Scalar)), may_alias));
+  static constexpr std::ptrdiff_t kCount = kBytes / sizeof(Scalar);
 };
 
 /// Rows of a tile: with two vectors a row, its 12 sums fill the 16 vector registers best.
 constexpr int kTileRows = 6;
 
 /// One tile of c, held in registers over the whole depth.
-template <typename Scalar, int kRows, int kVectors>
+template <typename Scalar, int kBytes, int kRows, int kVectors>
 HV_INLINE void AddTile(const ProductTask<Scalar>& task, std::ptrdiff_t row, std::ptrdiff_t col) {
-  using Loose = typename Lanes<Scalar>::Loose;
-  constexpr std::ptrdiff_t kLanes = Lanes<Scalar>::kCount;
-  using Vec = typename Lanes<Scalar>::Type;
+  using Loose = typename Lanes<Scalar, kBytes>::Loose;
+  constexpr std::ptrdiff_t kLanes = Lanes<Scalar, kBytes>::kCount;
+  using Vec = typename Lanes<Scalar, kBytes>::Type;
   Vec sum[kRows][kVectors] = {};
   const Scalar* a = task.a + row * task.a_row;
   const Scalar* b = task.b + col;
@@ -47,14 +46,14 @@ HV_INLINE void AddTile(const ProductTask<Scalar>& task, std::ptrdiff_t row, std:
   }
 }
 
-template <typename Scalar, int kVectors>
+template <typename Scalar, int kBytes, int kVectors>
 void AddColumns(const ProductTask<Scalar>& task, std::ptrdiff_t col) {
   std::ptrdiff_t row = 0;
   for (; row + kTileRows <= task.rows; row += kTileRows) {
-    AddTile<Scalar, kTileRows, kVectors>(task, row, col);
+    AddTile<Scalar, kBytes, kTileRows, kVectors>(task, row, col);
   }
-  for (; row + 2 <= task.rows; row += 2) AddTile<Scalar, 2, kVectors>(task, row, col);
-  if (row < task.rows) AddTile<Scalar, 1, kVectors>(task, row, col);
+  for (; row + 2 <= task.rows; row += 2) AddTile<Scalar, kBytes, 2, kVectors>(task, row, col);
+  if (row < task.rows) AddTile<Scalar, kBytes, 1, kVectors>(task, row, col);
 }
 
 /// The last columns, fewer than fill a vector.
@@ -72,9 +71,13 @@ void AddRest(const ProductTask<Scalar>& task, std::ptrdiff_t col) {
 
 template <typename Scalar>
 void AddProductLoop(const ProductTask<Scalar>& task) {
-  constexpr std::ptrdiff_t kLanes = Lanes<Scalar>::kCount;
+  constexpr std::ptrdiff_t kWide = Lanes<Scalar, kVectorBytes>::kCount;
+  constexpr std::ptrdiff_t kNarrow = Lanes<Scalar, 16>::kCount;
   std::ptrdiff_t col = 0;
-  for (; col + 2 * kLanes <= task.cols; col += 2 * kLanes) AddColumns<Scalar, 2>(task, col);
-  for (; col + kLanes <= task.cols; col += kLanes) AddColumns<Scalar, 1>(task, col);
+  for (; col + 2 * kWide <= task.cols; col += 2 * kWide) {
+    AddColumns<Scalar, kVectorBytes, 2>(task, col);
+  }
+  for (; col + kWide <= task.cols; col += kWide) AddColumns<Scalar, kVectorBytes, 1>(task, col);
+  for (; col + kNarrow <= task.cols; col += kNarrow) AddColumns<Scalar, 16, 1>(task, col);
   if (col < task.cols) AddRest(task, col);
 }

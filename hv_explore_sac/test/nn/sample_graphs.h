@@ -16,8 +16,8 @@ inline Matrix<float> RandomMatrix(std::mt19937& random, Index rows, Index cols) 
   return Matrix<float>::NullaryExpr(rows, cols, [&] { return normal(random); });
 }
 
-/// Nodes scattered at about one a unit square, each with its `most` nearest neighbours; the robot is
-/// at the first node and may go to its neighbours.
+/// Nodes scattered at about one a unit square, each with its `most` nearest neighbours; the robot
+/// is at the first node and may go to its neighbours.
 inline GraphInput RandomGraph(std::uint32_t seed, Index nodes, Index features, Index most = 19,
                               Index history = 5, Index globals = 3) {
   std::mt19937 random(seed);

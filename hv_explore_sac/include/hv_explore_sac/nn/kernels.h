@@ -49,10 +49,19 @@ void AttentionWeights(const AttentionInput<Scalar>& input, View<Scalar> scores);
 template <typename Scalar>
 void MixValues(const AttentionInput<Scalar>& input, View<const Scalar> weights, View<Scalar> out);
 
-/// Backward of both: adds to `d_q` and `d_kv`, and turns `weights` into the gradient of the scores.
+/// Gradients of what attention reads.
 template <typename Scalar>
-void AttentionBackward(const AttentionInput<Scalar>& input, View<const Scalar> d_out,
-                       View<Scalar> weights, View<Scalar> d_q, View<Scalar> d_kv);
+struct QueryMemory {
+  View<Scalar> q;
+  View<Scalar> kv;
+};
+
+/// Backward of both, given the mixed values `out` and their gradient: adds to `gradient`, and turns
+/// `weights` into the gradient of the scores.
+template <typename Scalar>
+void AttentionBackward(const AttentionInput<Scalar>& input, View<const Scalar> out,
+                       View<const Scalar> d_out, View<Scalar> weights,
+                       const QueryMemory<Scalar>& gradient);
 
 /// "avx2+fma" or "plain".
 const char* KernelSet();

@@ -89,7 +89,8 @@ void Relu(View<Scalar> x) {
 }
 template <typename Scalar>
 void ReluBackward(View<const Scalar> y, View<Scalar> d_y) {
-  d_y.matrix() = (y.matrix().array() > Scalar(0)).select(d_y.matrix(), Scalar(0));
+  for (Index i = 0; i < y.size(); ++i)
+    d_y.data[i] = y.data[i] > Scalar(0) ? d_y.data[i] : Scalar(0);
 }
 
 extern template class Linear<float>;
