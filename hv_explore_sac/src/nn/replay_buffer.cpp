@@ -74,12 +74,12 @@ ReplayBuffer::ReplayBuffer(std::size_t capacity, int pyramid_levels)
     : capacity_(std::max<std::size_t>(capacity, 2)), pyramid_levels_(pyramid_levels) {}
 
 void ReplayBuffer::Add(const Episode& episode) {
-  for (std::size_t i = 0; i < episode.steps.size(); ++i) {
-    const EpisodeStep& step = episode.steps[i];
-    const bool last = i + 1 == episode.steps.size();
+  if (episode.steps.empty()) return;
+  for (const EpisodeStep& step : episode.steps) {
+    const bool last = &step == &episode.steps.back();
     Push({PackedGraph(step.state), step.action, step.reward, last && episode.done, step.label});
   }
-  if (!episode.done && !episode.steps.empty()) Push({PackedGraph(episode.last)});
+  if (!episode.done) Push({PackedGraph(episode.last), kNoAction, 0.0F, false, {}});
 }
 
 void ReplayBuffer::Push(Record record) {

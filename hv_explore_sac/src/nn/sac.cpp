@@ -36,7 +36,7 @@ SacStatistics Sac::Update(std::size_t count, const Fetch& fetch) {
       });
   Eigen::VectorXf actor = sums.head(actor_.layout().size());
   Eigen::VectorXf critic = sums.segment(actor.size(), critic_.layout().size());
-  const auto means = sums.tail(Sums::kStatistics).cast<double>();
+  const Eigen::VectorXd means = sums.tail(Sums::kStatistics).cast<double>();
   SacStatistics statistics;
   statistics.critic_loss = means[Sums::kCriticLoss];
   statistics.actor_loss = means[Sums::kActorLoss];

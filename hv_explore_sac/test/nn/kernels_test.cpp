@@ -1,9 +1,12 @@
 #include "hv_explore_sac/nn/kernels.h"
 
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "kernel_table.h"
 #include "sample_graphs.h"
 
 namespace hv::explore::nn {
@@ -65,7 +68,8 @@ TEST(Attention, EqualsDenseAttentionUnderAMask) {
   const GraphSample sample = BuildSample(RandomGraph(3, 60, 2), 0);
   const GraphLevel& level = sample.levels[0];
   std::mt19937 random(2);
-  for (const auto& [width, heads] : {std::pair<Index, Index>{64, 4}, {12, 3}, {6, 6}, {80, 5}}) {
+  for (const auto& [width, heads] :
+       std::vector<std::pair<Index, Index>>{{64, 4}, {12, 3}, {6, 6}, {80, 5}}) {
     const Matrix<float> q = RandomMatrix(random, 60, width);
     const Matrix<float> kv = RandomMatrix(random, 60, 2 * width);
     const NeighbourLists lists{60, level.start.data(), level.neighbour.data()};
@@ -94,6 +98,50 @@ TEST(Attention, IsFiniteForExtremeScores) {
   MixValues<float>(input, {weights, 2, 1}, {out, 1, 2});
   EXPECT_FLOAT_EQ(out[0], 1.0F);
   EXPECT_FLOAT_EQ(out[1], 2.0F);
+}
+
+/// The set that this processor does not use must not rot.
+TEST(Kernels, PlainOnesAgreeWithThoseInUse) {
+  std::mt19937 random(8);
+  const Matrix<float> a = RandomMatrix(random, 31, 17);
+  const Matrix<float> b = RandomMatrix(random, 17, 27);
+  Matrix<float> c = Matrix<float>::Zero(31, 27);
+  PlainKernels<float>().add_product({a.data(), 17, 1, b.data(), c.data(), 31, 17, 27});
+  EXPECT_LT((c - a * b).cwiseAbs().maxCoeff(), 1e-5F);
+
+  const GraphSample sample = BuildSample(RandomGraph(3, 40, 2), 0);
+  const GraphLevel& level = sample.levels[0];
+  const NeighbourLists lists{40, level.start.data(), level.neighbour.data()};
+  const Matrix<float> q = RandomMatrix(random, 40, 64);
+  const Matrix<float> kv = RandomMatrix(random, 40, 128);
+  const AttentionInput<float> input{lists, 4, {q.data(), 40, 64}, {kv.data(), 40, 128}};
+  Matrix<float> weights = Matrix<float>::Zero(lists.edges(), 4);
+  AttentionWeights<float>(input, {weights.data(), lists.edges(), 4});
+  Matrix<float> plain = Matrix<float>::Zero(lists.edges(), 4);
+  const AttentionTask<float> task{40, lists.start, lists.neighbour, 4,
+                                  16, 0.25F,       q.data(),        kv.data()};
+  PlainKernels<float>().attention_scores(task, plain.data());
+  PlainKernels<float>().softmax(task, plain.data());
+  EXPECT_LT((plain - weights).cwiseAbs().maxCoeff(), 1e-5F);
+
+  Matrix<float> out(40, 64);
+  MixValues<float>(input, {weights.data(), lists.edges(), 4}, {out.data(), 40, 64});
+  Matrix<float> plain_out(40, 64);
+  PlainKernels<float>().mix_values(task, plain.data(), plain_out.data());
+  EXPECT_LT((plain_out - out).cwiseAbs().maxCoeff(), 1e-5F);
+
+  const Matrix<float> d_out = RandomMatrix(random, 40, 64);
+  Matrix<float> d_q = Matrix<float>::Zero(40, 64);
+  Matrix<float> d_kv = Matrix<float>::Zero(40, 128);
+  AttentionBackward<float>(input, {out.data(), 40, 64}, {d_out.data(), 40, 64},
+                           {weights.data(), lists.edges(), 4},
+                           {{d_q.data(), 40, 64}, {d_kv.data(), 40, 128}});
+  Matrix<float> plain_d_q = Matrix<float>::Zero(40, 64);
+  Matrix<float> plain_d_kv = Matrix<float>::Zero(40, 128);
+  PlainKernels<float>().attention_backward(
+      task, {plain_out.data(), d_out.data(), plain.data(), plain_d_q.data(), plain_d_kv.data()});
+  EXPECT_LT((plain_d_q - d_q).cwiseAbs().maxCoeff(), 1e-4F);
+  EXPECT_LT((plain_d_kv - d_kv).cwiseAbs().maxCoeff(), 1e-4F);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@ Run by hand when the architecture changes (Debian: python3-torch):
 
     /usr/bin/python3 make_reference.py
 
-Neighbour lists are masks of dense attention here and torch.nn.LSTM is PyTorch's own, so that little
-is shared with the code under test. The file is a count, then for each array a name (length and
+Neighbour lists are masks of dense attention here, and the LSTM's cell is PyTorch's own, so that
+little is shared with the code under test. The file is a count, then for each array a name (length and
 bytes), rows, columns (all u32) and floats, little endian.
 """
 import math
@@ -106,15 +106,13 @@ def pyramid(x, positions, mask, centre):
 
 
 def memory(history):
-    lstm = torch.nn.LSTM(FEATURES, MEMORY)
-    weights = {
-        "weight_ih_l0": parameter("memory.input.weight", FEATURES, 4 * MEMORY).T,
-        "weight_hh_l0": parameter("memory.recurrent", MEMORY, 4 * MEMORY).T,
-        "bias_ih_l0": parameter("memory.input.bias", 1, 4 * MEMORY)[0],
-        "bias_hh_l0": torch.zeros(4 * MEMORY),
-    }
-    _, (hidden, _) = torch.nn.utils.stateless.functional_call(lstm, weights, (history,))
-    return hidden
+    state = torch.zeros(1, MEMORY), torch.zeros(1, MEMORY)
+    weights = (parameter("memory.input.weight", FEATURES, 4 * MEMORY).T,
+               parameter("memory.recurrent", MEMORY, 4 * MEMORY).T,
+               parameter("memory.input.bias", 1, 4 * MEMORY)[0], torch.zeros(4 * MEMORY))
+    for step in history:
+        state = torch.lstm_cell(step[None], state, *weights)
+    return state[0]
 
 
 def decode(nodes, current, actions, positions, state_memory, state_globals):
