@@ -55,7 +55,9 @@ TEST(ReplayBuffer, JoinsConsecutiveStates) {
     const Transition transition = buffer.Get(i);
     EXPECT_EQ(transition.done, i == 2);
     EXPECT_EQ(transition.reward, static_cast<float>(NumberOf(transition.state)));
-    if (!transition.done) EXPECT_EQ(NumberOf(transition.next), NumberOf(transition.state) + 1);
+    if (!transition.done) {
+      EXPECT_EQ(NumberOf(transition.next), NumberOf(transition.state) + 1);
+    }
     EXPECT_EQ(transition.state.levels.size(), 2U);
   }
 }
@@ -73,8 +75,12 @@ TEST(ReplayBuffer, OverwritesTheOldestAndStaysConsistent) {
     for (const std::size_t position : buffer.Draw(20, random)) {
       const Transition transition = buffer.Get(position);
       EXPECT_EQ(transition.reward, static_cast<float>(NumberOf(transition.state)));
-      if (!transition.done) EXPECT_EQ(NumberOf(transition.next), NumberOf(transition.state) + 1);
-      if (buffer.states() == 17U) EXPECT_GT(NumberOf(transition.state), next - 17 * 11);
+      if (!transition.done) {
+        EXPECT_EQ(NumberOf(transition.next), NumberOf(transition.state) + 1);
+      }
+      if (buffer.states() == 17U) {
+        EXPECT_GT(NumberOf(transition.state), next - 17 * 11);
+      }
     }
   }
 }
