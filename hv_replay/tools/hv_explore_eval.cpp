@@ -13,6 +13,7 @@
 #include "hv_explore_sac/exploration_run.h"
 #include "hv_replay/console.h"
 #include "hv_replay/json.h"
+#include "tool.h"
 
 namespace {
 
@@ -186,11 +187,7 @@ int Run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app("Explores maps in simulation and compares planners.", "hv_explore_eval");
-  app.failure_message([&app](const CLI::App*, const CLI::Error& error) {
-    return app.get_name() + ": " + error.what() + " (--help lists the options)\n";
-  });
   Arguments arguments;
   Declare(app, arguments);
-  CLI11_PARSE(app, argc, argv);
-  return hv::replay::RunTool(app.get_name(), [&arguments] { return Run(arguments); });
+  return hv::replay::RunTool(app, argc, argv, [&arguments] { return Run(arguments); });
 }
