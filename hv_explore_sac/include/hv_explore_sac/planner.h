@@ -15,7 +15,7 @@ namespace hv::explore {
 /// Settings of the planners that need no learning. Lengths are in cells of the belief.
 struct PlannerConfig {
   double utility_decay = 0.02;  ///< of the utility with the distance [1/cells]
-  double branch_decay = 0.02;   ///< the same along a branch [1/cells]
+  double branch_decay = 0.03;   ///< the same along a branch [1/cells]
   double keep_goal = 1.1;       ///< another goal must be so many times better
   int tour_samples = 20;        ///< set covers that are tried for each tour
   int oracle_trials = 4;        ///< changes of its route that the oracle tries at each decision
