@@ -1,9 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
-#include <stdexcept>
+#include <new>
 #include <type_traits>
 #include <vector>
 
