@@ -47,6 +47,7 @@ void MovingObstaclesConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("reach_m", reach_m, "distance from the robot up to which it is looked for [m]");
   visitor.Field("speed_mps", speed_mps, "at which it is taken to move on [m/s]");
   visitor.Field("horizon_s", horizon_s, "and for how long [s]");
+  visitor.Field("hold_s", hold_s, "what moved is minded when it is not noticed for so long [s]");
   visitor.Field("radius_m", radius_m, "of what moves [m]");
   visitor.Field("least_cells", least_cells, "cells newly taken together; fewer are noise");
   visitor.Field("most_cells", most_cells, "cells newly taken together; more are no person");
@@ -61,6 +62,7 @@ void MovingObstaclesConfig::Validate(ConfigProblems& problems) const {
   positive(speed_mps, "speed_mps");
   positive(horizon_s, "horizon_s");
   positive(radius_m, "radius_m");
+  problems.Require(hold_s >= 0.0, "moving.hold_s", "must not be negative");
   problems.Require(least_cells >= 1, "moving.least_cells", "must be at least 1");
   problems.Require(most_cells >= least_cells, "moving.most_cells",
                    "must be at least moving.least_cells");
@@ -74,9 +76,13 @@ std::vector<Vector2i> MovingObstacles::Predict(Time stamp, const OccupancyGrid& 
   if (const OccupancyGrid* before = GridBefore(stamp)) {
     for (const Group& group : NewlyTaken(seen, *before, robot)) {
       const Vector2d direction = DirectionOf(group, seen, *before);
-      if (direction.squaredNorm() > 0.0) Sweep(group, direction, seen, cells);
+      if (direction.squaredNorm() > 0.0) walkers_.push_back({stamp, group.center, direction});
     }
   }
+  while (!walkers_.empty() && stamp - walkers_.front().stamp > config_.hold_s) {
+    walkers_.pop_front();
+  }
+  for (const Walker& walker : walkers_) Sweep(walker, stamp, seen, cells);
   past_.push_back({stamp, seen});
   return cells;
 }
@@ -157,19 +163,21 @@ Vector2d MovingObstacles::DirectionOf(const Group& group, const OccupancyGrid& s
   return was_cells >= kLeastCells ? Vector2d(-was.normalized()) : Vector2d::Zero();
 }
 
-void MovingObstacles::Sweep(const Group& group, const Vector2d& direction,
-                            const OccupancyGrid& seen, std::vector<Vector2i>& cells) const {
-  const double way_m = config_.speed_mps * config_.horizon_s;
+void MovingObstacles::Sweep(const Walker& walker, Time now, const OccupancyGrid& seen,
+                            std::vector<Vector2i>& cells) const {
+  // Who walks slower than that is still in the grid itself.
+  const double gone_m = config_.speed_mps * (now - walker.stamp);
+  const double way_m = gone_m + config_.speed_mps * config_.horizon_s;
   const double reach_m = way_m + config_.radius_m;
-  const Vector2i middle = seen.CellOf(group.center);
+  const Vector2i middle = seen.CellOf(walker.place);
   const int reach = static_cast<int>(reach_m / seen.resolution_m);
   for (int y = -reach; y <= reach; ++y) {
     for (int x = -reach; x <= reach; ++x) {
       const Vector2i cell = middle + Vector2i(x, y);
       if (!seen.Contains(cell)) continue;
-      const Vector2d away = seen.CenterOf(cell) - group.center;
-      const double along_m = std::clamp(away.dot(direction), 0.0, way_m);
-      if ((away - along_m * direction).norm() <= config_.radius_m) cells.push_back(cell);
+      const Vector2d away = seen.CenterOf(cell) - walker.place;
+      const double along_m = std::clamp(away.dot(walker.direction), gone_m, way_m);
+      if ((away - along_m * walker.direction).norm() <= config_.radius_m) cells.push_back(cell);
     }
   }
 }

@@ -81,6 +81,16 @@ TEST_F(MovingObstaclesTest, WhoWalksIsTakenToWalkOn) {
   }
 }
 
+TEST_F(MovingObstaclesTest, WhoIsNotNoticedForAMomentIsStillMinded) {
+  OccupancyGrid grid;
+  ASSERT_FALSE(Walk({-1.0, 0.0}, {1.0, 0.0}, grid).empty());
+  // At (0.2, 0) by now, standing still: nothing is newly taken.
+  int minded = 0;
+  for (int i = 0; i < 20; ++i) minded += Show(grid).empty() ? 0 : 1;
+  EXPECT_GE(minded * kPeriod_s, config_.hold_s - kPeriod_s);
+  EXPECT_LE(minded * kPeriod_s, config_.hold_s + config_.compare_s + 2.0 * kPeriod_s);
+}
+
 TEST_F(MovingObstaclesTest, WhatStandsGoesNowhere) {
   for (int i = 0; i < 20; ++i) {
     OccupancyGrid grid = FreeGrid();

@@ -19,6 +19,7 @@ struct MovingObstaclesConfig {
   double reach_m = 4.0;    ///< around the robot
   double speed_mps = 1.2;  ///< of a walking person
   double horizon_s = 1.0;  ///< it goes on straight for so long
+  double hold_s = 0.6;     ///< what moved is minded, when it is not noticed for a moment
   double radius_m = 0.3;   ///< of a person
   int least_cells = 2;     ///< fewer that are taken newly are noise
   int most_cells = 60;     ///< more are an error of the pose
@@ -39,7 +40,10 @@ class MovingObstacles {
   std::vector<Eigen::Vector2i> Predict(Time stamp, const OccupancyGrid& seen,
                                        const Eigen::Vector2d& robot);
 
-  void Clear() { past_.clear(); }
+  void Clear() {
+    past_.clear();
+    walkers_.clear();
+  }
 
  private:
   struct Past {
@@ -47,17 +51,23 @@ class MovingObstacles {
     OccupancyGrid grid;
   };
   struct Group;
+  struct Walker {
+    Time stamp;
+    Eigen::Vector2d place;      ///< [m]
+    Eigen::Vector2d direction;  ///< unit
+  };
 
   const OccupancyGrid* GridBefore(Time stamp);
   std::vector<Group> NewlyTaken(const OccupancyGrid& seen, const OccupancyGrid& before,
                                 const Eigen::Vector2d& robot) const;
   Eigen::Vector2d DirectionOf(const Group& group, const OccupancyGrid& seen,
                               const OccupancyGrid& before) const;
-  void Sweep(const Group& group, const Eigen::Vector2d& direction, const OccupancyGrid& seen,
+  void Sweep(const Walker& walker, Time now, const OccupancyGrid& seen,
              std::vector<Eigen::Vector2i>& cells) const;
 
   MovingObstaclesConfig config_;
-  std::deque<Past> past_;  ///< oldest first
+  std::deque<Past> past_;       ///< oldest first
+  std::deque<Walker> walkers_;  ///< noticed of late, oldest first
 };
 
 }  // namespace hv::navigation

@@ -17,7 +17,7 @@ struct PoseSearchConfig {
   double level_share = 0.2;
   int max_hypotheses = 8;
   double min_score = 0.3;
-  double min_score_share = 0.9;
+  double min_score_share = 0.85;
   double same_place_m = 1.5;
   double same_heading_deg = 15.0;
   int max_nodes = 400000;
