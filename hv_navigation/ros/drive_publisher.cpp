@@ -48,6 +48,7 @@ void DrivePublisher::PublishVelocity(const Velocity& velocity) const {
 
 void DrivePublisher::PublishPicture(const NavigationOutput& output, const DrivePose& pose) {
   PublishPlan(output, pose);
+  if (pose.odom_frame.empty()) return;  // no odometry yet
   if (local_plan_.getNumSubscribers() > 0) {
     local_plan_.publish(ToPathMessage(output.trajectory, pose.odom_frame, pose.stamp,
                                       pose.T_odom_base.translation().z()));
