@@ -8,22 +8,12 @@
 #include "hv_replay/map_picture.h"
 #include "hv_replay/result_files.h"
 #include "hv_replay/trajectory_error.h"
+#include "tracked_scan.h"
 
 namespace hv::replay {
 namespace {
 
 constexpr double kDegrees = 180.0 / M_PI;
-
-relocalize::TrackedScan ScanOf(const lio::ScanResult& result, const Eigen::Vector3d& lidar_in_imu) {
-  relocalize::TrackedScan scan;
-  scan.stamp = result.estimate.stamp;
-  scan.T_odom_imu = result.estimate.T_odom_imu;
-  scan.segment = result.segment;
-  scan.lidar_in_imu = lidar_in_imu;
-  scan.points.reserve(result.deskewed->size());
-  for (const Point& point : *result.deskewed) scan.points.emplace_back(point.x, point.y, point.z);
-  return scan;
-}
 
 std::string RowOf(const relocalize::LocalizerUpdate& update, Time stamp, double elapsed_ms) {
   char text[256];
@@ -85,8 +75,8 @@ void LocalizeRun::Take(const lio::ScanResult& result) {
   const Time stamp = result.estimate.stamp;
   if (!lost_since_ && state_ == relocalize::LocalizerState::kLost) lost_since_ = stamp;
   const auto start = std::chrono::steady_clock::now();
-  const relocalize::LocalizerUpdate update =
-      localizer_.Add(ScanOf(result, config_.system.odometry.extrinsic.T_imu_lidar().translation()));
+  const relocalize::LocalizerUpdate update = localizer_.Add(
+      TrackedScanOf(result, config_.system.odometry.extrinsic.T_imu_lidar().translation()));
   const std::chrono::duration<double, std::milli> elapsed =
       std::chrono::steady_clock::now() - start;
   Note(update, stamp, elapsed.count());

@@ -6,6 +6,7 @@
 #include "hv_relocalize_ndt/localizer.h"
 #include "hv_replay/robot_locator.h"
 #include "pose_history.h"
+#include "tracked_scan.h"
 
 namespace hv::replay {
 namespace {
@@ -39,7 +40,6 @@ class SensorLocator : public RobotLocator {
 
  private:
   BaseMotion MotionOf(const lio::OdometryEstimate& estimate) const;
-  void Localize(const lio::ScanResult& result);
   void Take(const relocalize::LocalizerUpdate& update);
 
   sim::SensorRig rig_;
@@ -72,7 +72,10 @@ std::optional<LocatedScan> SensorLocator::NextScan() {
     }
     if (result->status != lio::ScanStatus::kTracking || !result->deskewed) continue;
     predictor_.Anchor(result->estimate);
-    if (map_) Localize(*result);
+    if (map_) {
+      const Eigen::Vector3d lidar_in_imu = rig_.T_imu_lidar().translation();
+      Take(map_->localizer.Add(TrackedScanOf(*result, lidar_in_imu)));
+    }
     localized_ |= !map_;
     LocatedScan scan;
     scan.stamp = result->estimate.stamp;
@@ -89,17 +92,6 @@ std::optional<LocatedScan> SensorLocator::NextScan() {
     return scan;
   }
   return std::nullopt;
-}
-
-void SensorLocator::Localize(const lio::ScanResult& result) {
-  relocalize::TrackedScan scan;
-  scan.stamp = result.estimate.stamp;
-  scan.T_odom_imu = result.estimate.T_odom_imu;
-  scan.segment = result.segment;
-  scan.lidar_in_imu = rig_.T_imu_lidar().translation();
-  scan.points.reserve(result.deskewed->size());
-  for (const Point& point : *result.deskewed) scan.points.emplace_back(point.x, point.y, point.z);
-  Take(map_->localizer.Add(scan));
 }
 
 void SensorLocator::Take(const relocalize::LocalizerUpdate& update) {
