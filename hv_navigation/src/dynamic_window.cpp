@@ -57,6 +57,7 @@ std::optional<Candidate> DynamicWindow::Turn(double turn) const {
   const double other = turn - std::copysign(2.0 * M_PI, turn);
   Footprint bare = footprint_;
   bare.margin_m = std::min(bare.margin_m, 0.0);
+  if (!ahead_.LetStand(footprint_, pose_, 0.0)) return std::nullopt;
   for (const Footprint& footprint : {footprint_, bare}) {
     for (const double way : {turn, other}) {
       if (!footprint.CollidesTurning(grid_, pose_, way)) return TurnCandidate(way);
@@ -71,19 +72,19 @@ std::optional<Velocity> DynamicWindow::Straight(double speed_mps) const {
   return command;
 }
 
+/// Before everything that stands, and where those who walk let it.
 bool DynamicWindow::CanStop(Velocity velocity) const {
   const double step_s = 0.5 * config_.step_s;
+  const double brake_s = config_.period_s + config_.reaction_s;
   PlanarPose pose = pose_;
-  for (double t = 0.0; t < config_.period_s + config_.reaction_s; t += step_s) {
+  double time_s = 0.0;
+  while (time_s < brake_s || !Stands(velocity)) {
+    if (time_s >= brake_s) velocity = Braked(velocity, limits_, step_s);
     pose = Driven(pose, velocity, step_s);
-    if (footprint_.Collides(grid_, pose)) return false;
+    time_s += step_s;
+    if (ahead_.MayTouch(footprint_, pose, time_s)) return false;
   }
-  while (!Stands(velocity)) {
-    velocity = Braked(velocity, limits_, step_s);
-    pose = Driven(pose, velocity, step_s);
-    if (footprint_.Collides(grid_, pose)) return false;
-  }
-  return true;
+  return ahead_.LetStand(footprint_, pose, time_s);
 }
 
 double DynamicWindow::TurnRate(int k) const {
@@ -144,7 +145,7 @@ bool DynamicWindow::Rollout(const Velocity& target, Candidate& candidate) const 
   for (; free < steps; ++free) {
     velocity = Towards(velocity, target, limits_, config_.step_s);
     pose = Driven(pose, velocity, config_.step_s);
-    if (footprint_.Collides(grid_, pose)) break;
+    if (ahead_.MayTouch(footprint_, pose, config_.step_s * (free + 1))) break;
     candidate.trajectory.push_back(pose);
     nearness += Nearness(pose);
     off_path_m += tracker_.Nearest(pose.position, kWindow_m).distance_m;

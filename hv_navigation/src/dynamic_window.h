@@ -20,8 +20,8 @@ bool Stands(const Velocity& velocity);
 class DynamicWindow {
  public:
   DynamicWindow(const LocalPlannerConfig& config, const MotionLimits& limits,
-                const PathTracker& tracker, const ClearanceGrid& grid)
-      : config_(config), limits_(limits), tracker_(tracker), grid_(grid) {}
+                const PathTracker& tracker, const ObstaclesAhead& ahead)
+      : config_(config), limits_(limits), tracker_(tracker), ahead_(ahead), grid_(ahead.grid) {}
 
   /// False when the robot stands in an obstacle: then no motion can be judged.
   bool Start(const PlanarPose& pose, const Velocity& velocity, const Footprint& footprint);
@@ -48,7 +48,8 @@ class DynamicWindow {
   const LocalPlannerConfig& config_;
   const MotionLimits& limits_;
   const PathTracker& tracker_;
-  const ClearanceGrid& grid_;
+  const ObstaclesAhead& ahead_;
+  const ClearanceGrid& grid_;  ///< of them
   PlanarPose pose_;
   Velocity now_;
   Footprint footprint_;

@@ -29,6 +29,23 @@ void Take(const std::optional<Candidate>& candidate, const char* otherwise, Loca
 
 }  // namespace
 
+bool ObstaclesAhead::MayTouch(const Footprint& footprint, const PlanarPose& pose,
+                              double after_s) const {
+  if (footprint.Collides(grid, pose)) return true;
+  return walkers != nullptr && after_s <= walkers->horizon_s() &&
+         walkers->MayTouch(footprint, pose, now + after_s);
+}
+
+bool ObstaclesAhead::LetStand(const Footprint& footprint, const PlanarPose& pose,
+                              double from_s) const {
+  constexpr double kStep_s = 0.1;
+  if (walkers == nullptr) return true;
+  for (double after_s = from_s; after_s <= walkers->horizon_s(); after_s += kStep_s) {
+    if (walkers->MayTouch(footprint, pose, now + after_s)) return false;
+  }
+  return true;
+}
+
 LocalPlanner::LocalPlanner(const LocalPlannerConfig& config, const MotionLimits& limits,
                            const Footprint& footprint)
     : config_(config),
@@ -64,18 +81,18 @@ bool LocalPlanner::PathIsFree(const ClearanceGrid& grid, const PlanarPose& T_gri
   return true;
 }
 
-std::optional<Velocity> LocalPlanner::Turn(const ClearanceGrid& grid, const PlanarPose& pose,
+std::optional<Velocity> LocalPlanner::Turn(const ObstaclesAhead& ahead, const PlanarPose& pose,
                                            const Velocity& velocity, double turn) const {
-  DynamicWindow window(config_, limits_, *tracker_, grid);
+  DynamicWindow window(config_, limits_, *tracker_, ahead);
   if (!window.Start(pose, velocity, footprint_)) return std::nullopt;
   const std::optional<Candidate> candidate = window.Turn(turn);
   if (!candidate) return std::nullopt;
   return candidate->command;
 }
 
-std::optional<Velocity> LocalPlanner::BackOff(const ClearanceGrid& grid, const PlanarPose& pose,
+std::optional<Velocity> LocalPlanner::BackOff(const ObstaclesAhead& ahead, const PlanarPose& pose,
                                               const Velocity& velocity) const {
-  DynamicWindow window(config_, limits_, *tracker_, grid);
+  DynamicWindow window(config_, limits_, *tracker_, ahead);
   if (!window.Start(pose, velocity, footprint_)) return std::nullopt;
   return window.Straight(-limits_.max_reverse_mps);
 }
@@ -84,7 +101,7 @@ Velocity LocalPlanner::Brake(const Velocity& velocity) const {
   return Braked(velocity, limits_, config_.period_s);
 }
 
-LocalPlan LocalPlanner::Plan(const ClearanceGrid& grid, const PlanarPose& pose,
+LocalPlan LocalPlanner::Plan(const ObstaclesAhead& ahead, const PlanarPose& pose,
                              const Velocity& velocity) {
   LocalPlan plan;
   plan.velocity = Brake(velocity);
@@ -92,7 +109,7 @@ LocalPlan LocalPlanner::Plan(const ClearanceGrid& grid, const PlanarPose& pose,
   tracker_->Advance(pose.position);
   plan.remaining_m = tracker_->Remaining();
   plan.off_path_m = tracker_->Nearest(pose.position, config_.look_ahead_m).distance_m;
-  DynamicWindow window(config_, limits_, *tracker_, grid);
+  DynamicWindow window(config_, limits_, *tracker_, ahead);
   if (!window.Start(pose, velocity, footprint_)) {
     plan.state = LocalState::kBlocked;
     plan.reason = "the robot stands in an obstacle";

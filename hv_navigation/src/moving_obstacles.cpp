@@ -45,12 +45,10 @@ void MovingObstaclesConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("predict", predict, "keep out of the way of what moves");
   visitor.Field("compare_s", compare_s, "time between the grids that are compared [s]");
   visitor.Field("reach_m", reach_m, "distance from the robot up to which it is looked for [m]");
-  visitor.Field("speed_mps", speed_mps, "at which it is taken to move on [m/s]");
-  visitor.Field("horizon_s", horizon_s, "and for how long [s]");
   visitor.Field("hold_s", hold_s, "what moved is minded when it is not noticed for so long [s]");
-  visitor.Field("radius_m", radius_m, "of what moves [m]");
   visitor.Field("least_cells", least_cells, "cells newly taken together; fewer are noise");
   visitor.Field("most_cells", most_cells, "cells newly taken together; more are no person");
+  visitor.Section("walk", walk, "how it goes on");
 }
 
 void MovingObstaclesConfig::Validate(ConfigProblems& problems) const {
@@ -59,32 +57,40 @@ void MovingObstaclesConfig::Validate(ConfigProblems& problems) const {
   };
   positive(compare_s, "compare_s");
   positive(reach_m, "reach_m");
-  positive(speed_mps, "speed_mps");
-  positive(horizon_s, "horizon_s");
-  positive(radius_m, "radius_m");
   problems.Require(hold_s >= 0.0, "moving.hold_s", "must not be negative");
   problems.Require(least_cells >= 1, "moving.least_cells", "must be at least 1");
   problems.Require(most_cells >= least_cells, "moving.most_cells",
                    "must be at least moving.least_cells");
+  walk.Validate(problems);
 }
 
-std::vector<Vector2i> MovingObstacles::Predict(Time stamp, const OccupancyGrid& seen,
-                                               const Vector2d& robot) {
-  std::vector<Vector2i> cells;
-  if (!config_.predict) return cells;
+const std::vector<Walker>& MovingObstacles::Track(Time stamp, const OccupancyGrid& seen,
+                                                  const Vector2d& robot) {
+  if (!config_.predict) return walkers_;
   if (!past_.empty() && (stamp <= past_.back().stamp || stamp - past_.back().stamp > 1.0)) Clear();
+  std::vector<Walker> noticed;
   if (const OccupancyGrid* before = GridBefore(stamp)) {
     for (const Group& group : NewlyTaken(seen, *before, robot)) {
       const Vector2d direction = DirectionOf(group, seen, *before);
-      if (direction.squaredNorm() > 0.0) walkers_.push_back({stamp, group.center, direction});
+      if (direction.squaredNorm() > 0.0) noticed.push_back({stamp, group.center, direction});
     }
   }
-  while (!walkers_.empty() && stamp - walkers_.front().stamp > config_.hold_s) {
-    walkers_.pop_front();
-  }
-  for (const Walker& walker : walkers_) Sweep(walker, stamp, seen, cells);
+  Forget(stamp, noticed);
+  walkers_.insert(walkers_.end(), noticed.begin(), noticed.end());
   past_.push_back({stamp, seen});
-  return cells;
+  return walkers_;
+}
+
+/// Those who were not noticed for long, and those who have been noticed anew.
+void MovingObstacles::Forget(Time now, const std::vector<Walker>& noticed) {
+  const double same_m = 2.0 * config_.walk.radius_m;
+  const auto is_old = [&](const Walker& walker) {
+    return now - walker.stamp > config_.hold_s ||
+           std::any_of(noticed.begin(), noticed.end(), [&](const Walker& other) {
+             return Walkers::MayBeNear(config_.walk, walker, other.place, same_m, now);
+           });
+  };
+  walkers_.erase(std::remove_if(walkers_.begin(), walkers_.end(), is_old), walkers_.end());
 }
 
 /// The newest one that is old enough.
@@ -138,7 +144,7 @@ std::vector<MovingObstacles::Group> MovingObstacles::NewlyTaken(const OccupancyG
 Vector2d MovingObstacles::DirectionOf(const Group& group, const OccupancyGrid& seen,
                                       const OccupancyGrid& before) const {
   constexpr int kLeastCells = 2;
-  const double around_m = 2.0 * config_.radius_m + config_.speed_mps * config_.compare_s;
+  const double around_m = 2.0 * config_.walk.radius_m + config_.walk.most_mps * config_.compare_s;
   const Shifted past(seen, before);
   const Vector2i middle = seen.CellOf(group.center);
   const int reach = static_cast<int>(around_m / seen.resolution_m);
@@ -161,25 +167,6 @@ Vector2d MovingObstacles::DirectionOf(const Group& group, const OccupancyGrid& s
   }
   if (left_cells >= kLeastCells) return -left.normalized();
   return was_cells >= kLeastCells ? Vector2d(-was.normalized()) : Vector2d::Zero();
-}
-
-void MovingObstacles::Sweep(const Walker& walker, Time now, const OccupancyGrid& seen,
-                            std::vector<Vector2i>& cells) const {
-  // Who walks slower than that is still in the grid itself.
-  const double gone_m = config_.speed_mps * (now - walker.stamp);
-  const double way_m = gone_m + config_.speed_mps * config_.horizon_s;
-  const double reach_m = way_m + config_.radius_m;
-  const Vector2i middle = seen.CellOf(walker.place);
-  const int reach = static_cast<int>(reach_m / seen.resolution_m);
-  for (int y = -reach; y <= reach; ++y) {
-    for (int x = -reach; x <= reach; ++x) {
-      const Vector2i cell = middle + Vector2i(x, y);
-      if (!seen.Contains(cell)) continue;
-      const Vector2d away = seen.CenterOf(cell) - walker.place;
-      const double along_m = std::clamp(away.dot(walker.direction), gone_m, way_m);
-      if ((away - along_m * walker.direction).norm() <= config_.radius_m) cells.push_back(cell);
-    }
-  }
 }
 
 }  // namespace hv::navigation

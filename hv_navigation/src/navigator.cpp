@@ -248,7 +248,7 @@ void Navigator::Drive(const NavigationInput& input, NavigationOutput& output) {
     if (!pursuit_->problem.empty()) Stuck(input, pursuit_->problem, output);
     return;
   }
-  const LocalPlan local = local_.Plan(GridAhead(input), input.T_local_base, input.velocity);
+  const LocalPlan local = local_.Plan(AheadOf(input), input.T_local_base, input.velocity);
   output.velocity = local.velocity;
   output.trajectory = local.trajectory;
   output.remaining_m = course_->remaining_m = local.remaining_m;

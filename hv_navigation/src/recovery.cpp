@@ -56,13 +56,13 @@ std::optional<Velocity> Recovery::Turn(const NavigationInput& input) {
   turned_ += std::abs(WrappedAngle(input.T_local_base.yaw - last_yaw_));
   last_yaw_ = input.T_local_base.yaw;
   if (turned_ >= kAround) return std::nullopt;
-  return local_.Turn(GridAhead(input), input.T_local_base, input.velocity, kAround - turned_);
+  return local_.Turn(AheadOf(input), input.T_local_base, input.velocity, kAround - turned_);
 }
 
 std::optional<Velocity> Recovery::BackOff(const NavigationInput& input) const {
   const double driven_m = (input.T_local_base.position - from_.position).norm();
   if (driven_m >= config_.back_off_m) return std::nullopt;
-  return local_.BackOff(GridAhead(input), input.T_local_base, input.velocity);
+  return local_.BackOff(AheadOf(input), input.T_local_base, input.velocity);
 }
 
 }  // namespace hv::navigation

@@ -60,14 +60,10 @@ const SurroundingsView& Surroundings::Update(const Pose& T_odom_base,
     global_.Update(seen, Planar(*T_map_odom), T_odom_base.translation().head<2>());
     UpdateMap();
   }
-  const std::vector<Eigen::Vector2i> taken =
-      moving_.Predict(*scan_stamp_, seen, T_odom_base.translation().head<2>());
+  view_.walkers = std::make_shared<const Walkers>(
+      config_.moving.walk, moving_.Track(*scan_stamp_, seen, T_odom_base.translation().head<2>()));
   view_.local =
       std::make_shared<const ClearanceGrid>(std::move(seen), Unknown::kFree, clearance_m_);
-  view_.ahead = view_.local;
-  if (!taken.empty()) {
-    view_.ahead = std::make_shared<const ClearanceGrid>(view_.local->WithObstacles(taken));
-  }
   return view_;
 }
 

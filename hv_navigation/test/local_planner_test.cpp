@@ -34,12 +34,12 @@ struct Follower {
   explicit Follower(const PlanarPose& start)
       : planner({}, limits, footprint), robot(start, limits) {}
 
-  const LocalPlan& Step(const ClearanceGrid& grid) {
+  const LocalPlan& Step(const ObstaclesAhead& ahead) {
     const Velocity before = robot.velocity();
-    plan = planner.Plan(grid, robot.pose(), before);
+    plan = planner.Plan(ahead, robot.pose(), before);
     ExpectWithinLimits(before, plan.velocity);
     robot.Drive(plan.velocity, config.period_s);
-    collided |= Bare(footprint).Collides(grid, robot.pose());
+    collided |= Bare(footprint).Collides(ahead.grid, robot.pose());
     return plan;
   }
 
@@ -175,6 +175,79 @@ TEST(LocalPlannerTest, LetsAPersonCross) {
     EXPECT_LT(slowest_mps, 0.9);
     EXPECT_LT(time_s, 20.0);
   }
+}
+
+/// The hall and one person in it, who is noticed all along.
+struct PersonInHall {
+  Eigen::Vector2d from;
+  Eigen::Vector2d velocity;
+
+  Eigen::Vector2d At(double time_s) const { return from + time_s * velocity; }
+  double DistanceTo(const PlanarPose& robot, const Footprint& footprint, double time_s) const {
+    const Eigen::Vector2d there = robot.Inverse() * At(time_s);
+    const Eigen::Vector2d most(footprint.front_m, footprint.half_width_m);
+    const Eigen::Vector2d least(-footprint.back_m, -footprint.half_width_m);
+    return (there - there.cwiseMax(least).cwiseMin(most)).norm();
+  }
+};
+
+struct Encounter {
+  LocalState state;
+  double time_s;
+  double nearest_moving_m;  ///< between the person's middle and the robot, while it moves
+  double slowest_mps;       ///< after the first second, before the goal
+};
+
+/// The robot drives 8 m along the hall.
+Encounter Meet(const PersonInHall& person) {
+  Follower run({{1.0, 2.5}, 0.0});
+  run.planner.SetPath(StraightPath(run.robot.pose(), 8.0));
+  Encounter result{LocalState::kDriving, 0.0, 100.0, 1.0};
+  const WalkConfig walk;
+  for (; result.time_s < 40.0 && run.plan.state != LocalState::kReached; result.time_s += 0.1) {
+    const Eigen::Vector2d at = person.At(result.time_s);
+    OccupancyGrid cells = Hall();
+    FillCells(cells, at - Eigen::Vector2d(0.2, 0.2), at + Eigen::Vector2d(0.2, 0.2));
+    const ClearanceGrid grid = Clearances(cells);
+    const Time now = Time::FromSeconds(100.0 + result.time_s);
+    const Walkers walkers(walk, {{now, at, person.velocity.normalized()}});
+    run.Step({grid, &walkers, now});
+    const Velocity& velocity = run.robot.velocity();
+    if (std::abs(velocity.linear_mps) > 0.02 || std::abs(velocity.angular_rps) > 0.05) {
+      const double distance_m =
+          person.DistanceTo(run.robot.pose(), run.footprint, result.time_s + 0.1);
+      result.nearest_moving_m = std::min(result.nearest_moving_m, distance_m);
+    }
+    if (result.time_s > 2.0 && run.plan.remaining_m > 1.0) {
+      result.slowest_mps = std::min(result.slowest_mps, velocity.linear_mps);
+    }
+  }
+  result.state = run.plan.state;
+  return result;
+}
+
+TEST(LocalPlannerTest, MovesIntoNobodyWhoWalks) {
+  for (const double speed_mps : {0.8, 1.2}) {
+    for (double begin_m = 0.3; begin_m < 4.7; begin_m += 0.8) {
+      for (const double side : {-1.0, 1.0}) {
+        // Across the hall, and out through its wall.
+        const Encounter across =
+            Meet({{4.0, 2.5 - side * (2.5 + begin_m)}, {0.0, side * speed_mps}});
+        EXPECT_EQ(across.state, LocalState::kReached) << begin_m;
+        EXPECT_GT(across.nearest_moving_m, 0.2) << begin_m << " " << side << " " << speed_mps;
+      }
+      const Encounter towards = Meet({{3.0 + begin_m, 2.5}, {-speed_mps, 0.0}});
+      EXPECT_GT(towards.nearest_moving_m, 0.2) << begin_m << " " << speed_mps;
+    }
+  }
+}
+
+TEST(LocalPlannerTest, GoesOnWhenSomebodyWalksAway) {
+  // Away across the hall, just off the path, and ahead of the robot as fast as it drives.
+  EXPECT_GT(Meet({{4.0, 3.6}, {0.0, 1.0}}).slowest_mps, 0.6);
+  EXPECT_GT(Meet({{3.5, 2.5}, {1.2, 0.0}}).slowest_mps, 0.6);
+  // Beside the path, the other way.
+  EXPECT_GT(Meet({{8.0, 3.7}, {-1.0, 0.0}}).slowest_mps, 0.6);
 }
 
 TEST(LocalPlannerTest, PassesANarrowDoor) {

@@ -40,23 +40,19 @@ void AddWall(OccupancyGrid& grid, double x_m) {
 
 class MovingObstaclesTest : public testing::Test {
  protected:
-  std::vector<Vector2i> Show(const OccupancyGrid& grid) {
+  std::vector<Walker> Show(const OccupancyGrid& grid) {
     time_s_ += kPeriod_s;
-    return moving_.Predict(Time::FromSeconds(time_s_), grid, Vector2d::Zero());
+    return moving_.Track(Time::FromSeconds(time_s_), grid, Vector2d::Zero());
   }
-  /// Somebody walks; the grid and the prediction at the end.
-  std::vector<Vector2i> Walk(const Vector2d& from, const Vector2d& velocity, OccupancyGrid& grid) {
-    std::vector<Vector2i> cells;
+  /// Somebody walks for 1.2 s; who is noticed in the end.
+  std::vector<Walker> Walk(const Vector2d& from, const Vector2d& velocity) {
+    std::vector<Walker> walkers;
     for (int i = 0; i <= 12; ++i) {
-      grid = FreeGrid();
+      OccupancyGrid grid = FreeGrid();
       AddDisc(grid, from + i * kPeriod_s * velocity, 0.25);
-      cells = Show(grid);
+      walkers = Show(grid);
     }
-    return cells;
-  }
-  static bool Holds(const std::vector<Vector2i>& cells, const OccupancyGrid& grid,
-                    const Vector2d& position) {
-    return std::find(cells.begin(), cells.end(), grid.CellOf(position)) != cells.end();
+    return walkers;
   }
 
   MovingObstaclesConfig config_;
@@ -64,27 +60,36 @@ class MovingObstaclesTest : public testing::Test {
   double time_s_ = 100.0;
 };
 
-TEST_F(MovingObstaclesTest, WhoWalksIsTakenToWalkOn) {
+TEST_F(MovingObstaclesTest, TellsWhereSomebodyWalks) {
   for (const double heading : {0.0, 0.7, 1.57, 2.5, -2.0}) {
     moving_.Clear();
     time_s_ += 10.0;
     const Vector2d ahead(std::cos(heading), std::sin(heading));
-    const Vector2d from = -1.2 * ahead;
-    OccupancyGrid grid;
-    const std::vector<Vector2i> cells = Walk(from, 1.0 * ahead, grid);
-    const Vector2d now = from + 1.2 * ahead;
-    EXPECT_TRUE(Holds(cells, grid, now + 0.9 * ahead)) << heading;
-    EXPECT_TRUE(Holds(cells, grid, now + 0.5 * ahead)) << heading;
-    EXPECT_FALSE(Holds(cells, grid, now - 0.7 * ahead)) << heading;
-    EXPECT_FALSE(Holds(cells, grid, now + Vector2d(-ahead.y(), ahead.x()))) << heading;
-    EXPECT_FALSE(Holds(cells, grid, now + 2.2 * ahead)) << heading;
+    const std::vector<Walker> walkers = Walk(-1.2 * ahead, 1.0 * ahead);
+    ASSERT_EQ(walkers.size(), 1U) << heading;
+    EXPECT_LT(walkers[0].place.norm(), 0.3) << heading;
+    EXPECT_GT(walkers[0].direction.dot(ahead), std::cos(0.4)) << heading;
+    EXPECT_EQ(walkers[0].stamp, Time::FromSeconds(time_s_));
   }
 }
 
+TEST_F(MovingObstaclesTest, TwoWhoPassAreTwo) {
+  std::vector<Walker> walkers;
+  for (int i = 0; i <= 12; ++i) {
+    OccupancyGrid grid = FreeGrid();
+    AddDisc(grid, {-1.2 + 0.1 * i, 0.8}, 0.25);
+    AddDisc(grid, {1.2 - 0.1 * i, -0.8}, 0.25);
+    walkers = Show(grid);
+  }
+  ASSERT_EQ(walkers.size(), 2U);
+  EXPECT_LT(walkers[0].direction.dot(walkers[1].direction), -0.9);
+}
+
 TEST_F(MovingObstaclesTest, WhoIsNotNoticedForAMomentIsStillMinded) {
-  OccupancyGrid grid;
-  ASSERT_FALSE(Walk({-1.0, 0.0}, {1.0, 0.0}, grid).empty());
-  // At (0.2, 0) by now, standing still: nothing is newly taken.
+  ASSERT_FALSE(Walk({-1.0, 0.0}, {1.0, 0.0}).empty());
+  OccupancyGrid grid = FreeGrid();
+  AddDisc(grid, {0.2, 0.0}, 0.25);
+  // Standing still by now: nothing is newly taken.
   int minded = 0;
   for (int i = 0; i < 20; ++i) minded += Show(grid).empty() ? 0 : 1;
   EXPECT_GE(minded * kPeriod_s, config_.hold_s - kPeriod_s);
@@ -116,10 +121,8 @@ TEST_F(MovingObstaclesTest, WhatComesIntoViewGoesNowhere) {
 }
 
 TEST_F(MovingObstaclesTest, GridsMoveWithTheRobot) {
-  std::vector<Vector2i> cells;
-  OccupancyGrid grid;
   for (int i = 0; i < 20; ++i) {
-    grid = FreeGrid({-6.0 + 0.1 * i, -6.0});
+    OccupancyGrid grid = FreeGrid({-6.0 + 0.1 * i, -6.0});
     AddDisc(grid, {1.5, 0.3}, 0.3);
     EXPECT_TRUE(Show(grid).empty()) << i;
   }
@@ -142,16 +145,16 @@ TEST_F(MovingObstaclesTest, SingleCellsAndWholeWallsAreNoPeople) {
 }
 
 TEST_F(MovingObstaclesTest, NothingIsToldWhenSwitchedOffOrAfterAPause) {
-  OccupancyGrid grid;
   config_.predict = false;
   MovingObstacles off(config_);
   for (int i = 0; i <= 12; ++i) {
-    grid = FreeGrid();
+    OccupancyGrid grid = FreeGrid();
     AddDisc(grid, {-1.0 + 0.1 * i, 0.0}, 0.25);
-    EXPECT_TRUE(off.Predict(Time::FromSeconds(0.1 * i), grid, Vector2d::Zero()).empty());
+    EXPECT_TRUE(off.Track(Time::FromSeconds(0.1 * i), grid, Vector2d::Zero()).empty());
   }
-  EXPECT_FALSE(Walk({-1.0, 0.0}, {1.0, 0.0}, grid).empty());
+  EXPECT_FALSE(Walk({-1.0, 0.0}, {1.0, 0.0}).empty());
   time_s_ += 5.0;
+  OccupancyGrid grid = FreeGrid();
   AddDisc(grid, {3.0, 3.0}, 0.25);
   EXPECT_TRUE(Show(grid).empty());
 }

@@ -106,7 +106,7 @@ void SimulatedDrive::Control(DriveCycle& cycle) {
   input.localized = cycle.place && cycle.place->localized;
   input.map = view().map;
   input.local_grid = view().local;
-  input.ahead_grid = view().ahead;
+  input.walkers = view().walkers;
   input.obstacles_stamp = view().obstacles_stamp;
   const Clock::time_point begin = Clock::now();
   cycle.output = navigator_.Update(input);

@@ -9,6 +9,7 @@
 #include "hv_navigation/footprint.h"
 #include "hv_navigation/motion_limits.h"
 #include "hv_navigation/path.h"
+#include "hv_navigation/walkers.h"
 
 namespace hv::navigation {
 
@@ -56,13 +57,30 @@ struct LocalPlan {
   double off_path_m = 0.0;   ///< distance of the robot from the path
 };
 
+/// What the next seconds are driven through: what stands, and who walks. Holds references.
+struct ObstaclesAhead {
+  ObstaclesAhead(const ClearanceGrid& what_stands, const Walkers* who_walks = nullptr,
+                 Time at = Time())
+      : grid(what_stands), walkers(who_walks), now(at) {}
+
+  const ClearanceGrid& grid;
+  const Walkers* walkers;  ///< null: nobody
+  Time now;
+
+  /// Whether the robot with its margin may touch anything at `pose`, where it is `after_s` from
+  /// now.
+  bool MayTouch(const Footprint& footprint, const PlanarPose& pose, double after_s) const;
+  /// Whether those who walk let a robot stand at `pose` from `from_s` from now on.
+  bool LetStand(const Footprint& footprint, const PlanarPose& pose, double from_s) const;
+};
+
 class DynamicWindow;
 class PathTracker;
 
 /// Follows a path by the dynamic window approach (Fox, Burgard and Thrun 1997): simulates what the
-/// limits allow, keeps what can still stop before every obstacle, with the exact footprint, and
-/// takes what gets on best along the path. Turns on the spot where the path has sharp corners or
-/// begins behind. Not thread-safe.
+/// limits allow, keeps what can still stop before every obstacle and out of the way of those who
+/// walk, with the exact footprint, and takes what gets on best along the path. Turns on the spot
+/// where the path has sharp corners or begins behind. Not thread-safe.
 class LocalPlanner {
  public:
   LocalPlanner(const LocalPlannerConfig& config, const MotionLimits& limits,
@@ -82,13 +100,13 @@ class LocalPlanner {
 
   /// One cycle. `velocity` is the one driven now. Total: without a path, or where nothing is safe,
   /// the velocity is to brake.
-  LocalPlan Plan(const ClearanceGrid& grid, const PlanarPose& pose, const Velocity& velocity);
+  LocalPlan Plan(const ObstaclesAhead& ahead, const PlanarPose& pose, const Velocity& velocity);
 
   /// Turns on the spot by `turn`, either way round, or backs off straight: the velocity for the
   /// next period; nullopt when that is not safe.
-  std::optional<Velocity> Turn(const ClearanceGrid& grid, const PlanarPose& pose,
+  std::optional<Velocity> Turn(const ObstaclesAhead& ahead, const PlanarPose& pose,
                                const Velocity& velocity, double turn) const;
-  std::optional<Velocity> BackOff(const ClearanceGrid& grid, const PlanarPose& pose,
+  std::optional<Velocity> BackOff(const ObstaclesAhead& ahead, const PlanarPose& pose,
                                   const Velocity& velocity) const;
 
   /// Slows down as fast as allowed, along the circle driven now.

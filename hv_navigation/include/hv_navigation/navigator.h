@@ -24,14 +24,12 @@ struct NavigationInput {
   Velocity velocity;      ///< driven now
   std::shared_ptr<const ClearanceGrid> map;
   std::shared_ptr<const ClearanceGrid> local_grid;
-  /// The same, and where what moves may get to; null where that is not known.
-  std::shared_ptr<const ClearanceGrid> ahead_grid;
+  std::shared_ptr<const Walkers> walkers;  ///< in the local frame; null: nobody
   Time obstacles_stamp;  ///< of the oldest among the newest data of the obstacle sensors
 };
 
-/// What the next seconds are driven by.
-inline const ClearanceGrid& GridAhead(const NavigationInput& input) {
-  return input.ahead_grid ? *input.ahead_grid : *input.local_grid;
+inline ObstaclesAhead AheadOf(const NavigationInput& input) {
+  return {*input.local_grid, input.walkers.get(), input.now};
 }
 
 enum class NavigationState {

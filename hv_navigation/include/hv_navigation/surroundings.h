@@ -22,7 +22,7 @@ namespace hv::navigation {
 /// What planning needs to know about obstacles, as NavigationInput wants it.
 struct SurroundingsView {
   std::shared_ptr<const ClearanceGrid> local;  ///< frame of odometry; null before the first scan
-  std::shared_ptr<const ClearanceGrid> ahead;  ///< the same, and where what moves may get to
+  std::shared_ptr<const Walkers> walkers;      ///< in the same frame; null before the first scan
   std::shared_ptr<const ClearanceGrid> map;    ///< frame of the map; null while nothing is known
   Time obstacles_stamp;  ///< of the oldest among the newest data of the sensors
 };

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "hv_core/config.h"
+#include "hv_core/time.h"
+#include "hv_navigation/footprint.h"
+#include "hv_navigation/planar.h"
+
+namespace hv::navigation {
+
+/// How those who walk are taken to go on: straight, at a speed between two bounds.
+struct WalkConfig {
+  double least_mps = 0.6;
+  double most_mps = 1.3;
+  double horizon_s = 1.5;
+  double radius_m = 0.3;
+
+  void Describe(ConfigVisitor& visitor);
+  void Validate(ConfigProblems& problems) const;
+};
+
+/// Somebody who walks, when last noticed.
+struct Walker {
+  Time stamp;
+  Eigen::Vector2d place;      ///< [m]
+  Eigen::Vector2d direction;  ///< unit
+};
+
+/// Where those who walk may be in the next seconds, in the frame of odometry. Immutable; const
+/// methods may run concurrently.
+class Walkers {
+ public:
+  Walkers(const WalkConfig& config, std::vector<Walker> walkers)
+      : config_(config), walkers_(std::move(walkers)) {}
+
+  const std::vector<Walker>& all() const { return walkers_; }
+
+  /// For how long they are minded [s].
+  double horizon_s() const { return config_.horizon_s; }
+
+  /// Whether one of them may touch a robot that is at `pose` then, with its margin.
+  bool MayTouch(const Footprint& footprint, const PlanarPose& pose, Time then) const;
+
+  /// Whether `walker` may be within `distance_m` of `place` then.
+  static bool MayBeNear(const WalkConfig& config, const Walker& walker,
+                        const Eigen::Vector2d& place, double distance_m, Time then);
+
+ private:
+  WalkConfig config_;
+  std::vector<Walker> walkers_;
+};
+
+}  // namespace hv::navigation
