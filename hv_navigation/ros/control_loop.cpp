@@ -125,6 +125,7 @@ NavigationInput ControlLoop::ReadInputs(ros::Time now) {
   other_clock_ = input.now != FromRos(now);
   input.map = view.map;
   input.local_grid = view.local;
+  input.standing_grid = view.standing;
   input.walkers = view.walkers;
   input.velocity = gate_.last();
   input.localized = false;

@@ -32,7 +32,7 @@ void Take(const std::optional<Candidate>& candidate, const char* otherwise, Loca
 bool ObstaclesAhead::MayTouch(const Footprint& footprint, const PlanarPose& pose,
                               double after_s) const {
   if (footprint.Collides(grid, pose)) return true;
-  return walkers != nullptr && after_s <= walkers->horizon_s() &&
+  return walkers != nullptr && after_s <= walkers->config().horizon_s &&
          walkers->MayTouch(footprint, pose, now + after_s);
 }
 
@@ -40,7 +40,7 @@ bool ObstaclesAhead::LetStand(const Footprint& footprint, const PlanarPose& pose
                               double from_s) const {
   constexpr double kStep_s = 0.1;
   if (walkers == nullptr) return true;
-  for (double after_s = from_s; after_s <= walkers->horizon_s(); after_s += kStep_s) {
+  for (double after_s = from_s; after_s <= walkers->config().horizon_s; after_s += kStep_s) {
     if (walkers->MayTouch(footprint, pose, now + after_s)) return false;
   }
   return true;

@@ -15,6 +15,11 @@ PlanarPose LocalFromMap(const NavigationInput& input) {
 
 constexpr std::size_t kMostMemories = 4;
 
+/// What plans have to lead around.
+const std::shared_ptr<const ClearanceGrid>& Standing(const NavigationInput& input) {
+  return input.standing_grid ? input.standing_grid : input.local_grid;
+}
+
 bool Within(const std::optional<Time>& since, Time now, double duration_s) {
   return since && now - *since < duration_s;
 }
@@ -152,7 +157,7 @@ void Navigator::CheckPath(const NavigationInput& input) {
   if (!course_) return;
   constexpr double kWholePath_m = 1e6;
   const bool seen_free =
-      local_.PathIsFree(*input.local_grid, PlanarPose(), config_.navigator.check_ahead_m);
+      local_.PathIsFree(*Standing(input), PlanarPose(), config_.navigator.check_ahead_m);
   const bool known_free =
       input.map == course_->map ||
       local_.PathIsFree(*input.map, course_->T_local_map.Inverse(), kWholePath_m);
@@ -160,7 +165,7 @@ void Navigator::CheckPath(const NavigationInput& input) {
   const bool blocked = !seen_free || !known_free;
   if (blocked && !course_->blocked) pursuit_->requested.reset();
   if (!seen_free && !course_->blocked) {
-    memories_.push_front({{input.local_grid, LocalFromMap(input).Inverse()}, input.now});
+    memories_.push_front({{Standing(input), LocalFromMap(input).Inverse()}, input.now});
     if (memories_.size() > kMostMemories) memories_.pop_back();
   }
   course_->blocked = blocked;
@@ -174,7 +179,7 @@ PlanningJob Navigator::JobNow(const NavigationInput& input) const {
   job.request.goal_tolerance_m = config_.navigator.goal_slack_m;
   job.request.yaw_tolerance = config_.navigator.goal_yaw_slack;
   job.map = input.map;
-  job.seen.push_back({input.local_grid, LocalFromMap(input).Inverse()});
+  job.seen.push_back({Standing(input), LocalFromMap(input).Inverse()});
   for (const Memory& memory : memories_) {
     if (Within(memory.stamp, input.now, config_.navigator.remember_s)) {
       job.seen.push_back(memory.seen);

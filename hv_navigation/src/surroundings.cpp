@@ -9,6 +9,36 @@ namespace hv::navigation {
 
 using Unknown = ClearanceGrid::Unknown;
 
+namespace {
+
+/// Makes unknown what is where those who walk may be; gives the cells that changed.
+std::optional<CellBox> TakeOut(const Walkers& walkers, Time now, OccupancyGrid& grid) {
+  constexpr double kAround_m = 0.2;  // of a person, for swinging arms and the size of cells
+  const WalkConfig& config = walkers.config();
+  std::optional<CellBox> changed;
+  for (const Walker& walker : walkers.all()) {
+    const double person_m = config.radius_m + kAround_m;
+    const double reach_m = person_m + config.most_mps * std::max(0.0, now - walker.stamp);
+    const Eigen::Vector2d reach = Eigen::Vector2d::Constant(reach_m);
+    const Eigen::Vector2i low = grid.CellOf(walker.place - reach);
+    const Eigen::Vector2i high = grid.CellOf(walker.place + reach);
+    for (int y = low.y(); y <= high.y(); ++y) {
+      for (int x = low.x(); x <= high.x(); ++x) {
+        const Eigen::Vector2i at(x, y);
+        if (!grid.Contains(at) || !OccupancyGrid::IsOccupied(grid.At(x, y))) continue;
+        if (!Walkers::MayBeNear(config, walker, grid.CenterOf(at), person_m, now)) continue;
+        grid.At(x, y) = OccupancyGrid::kUnknown;
+        if (!changed) changed = CellBox{at, at};
+        changed->low = changed->low.cwiseMin(at);
+        changed->high = changed->high.cwiseMax(at);
+      }
+    }
+  }
+  return changed;
+}
+
+}  // namespace
+
 Surroundings::Surroundings(const MappingConfig& config, double clearance_m,
                            std::optional<OccupancyGrid> saved)
     : config_(config),
@@ -56,14 +86,22 @@ const SurroundingsView& Surroundings::Update(const Pose& T_odom_base,
   if (!scanned_ || !T_odom_base.matrix().allFinite()) return view_;
   OccupancyGrid seen = MakeObstacleGrid(obstacles_, config_.ground, config_.obstacle_grid,
                                         T_odom_base, config_.obstacle_grid.side_m);
+  const Eigen::Vector2d robot = T_odom_base.translation().head<2>();
+  view_.walkers = std::make_shared<const Walkers>(config_.moving.walk,
+                                                  moving_.Track(*scan_stamp_, seen, robot));
+  OccupancyGrid standing = seen;
+  const std::optional<CellBox> walked = TakeOut(*view_.walkers, *scan_stamp_, standing);
   if (T_map_odom) {
-    global_.Update(seen, Planar(*T_map_odom), T_odom_base.translation().head<2>());
+    global_.Update(standing, Planar(*T_map_odom), robot);
     UpdateMap();
   }
-  view_.walkers = std::make_shared<const Walkers>(
-      config_.moving.walk, moving_.Track(*scan_stamp_, seen, T_odom_base.translation().head<2>()));
   view_.local =
       std::make_shared<const ClearanceGrid>(std::move(seen), Unknown::kFree, clearance_m_);
+  view_.standing = view_.local;
+  if (walked) {
+    view_.standing =
+        std::make_shared<const ClearanceGrid>(view_.local->WithCells(std::move(standing), *walked));
+  }
   return view_;
 }
 

@@ -256,5 +256,29 @@ TEST(PlanningConfigTest, DefaultsAreValidAndDescribed) {
   EXPECT_GE(found.lines().size(), 3U);
 }
 
+TEST(NavigatorTest, PlansLeadThroughThoseWhoWalk) {
+  SimulatedSite site(RingCorridor(), kWest, {});
+  const PlanarPose east{{20.0, 1.2}, 0.0};
+  site.navigator.SetGoal(east);
+  site.Step();
+  ASSERT_TRUE(PassesBy(site.output, {12.0, 1.2}));
+  for (double y = 0.2; y < 2.1; y += 0.1) site.ghosts.emplace_back(4.5, y);
+  SimulatedSite told(RingCorridor(), kWest, {});
+  told.navigator.SetGoal(east);
+  OccupancyGrid nobody = EmptyCells(200, 200, 0.05);
+  nobody.origin = {-4.0, -4.0};
+  told.input.standing_grid =
+      std::make_shared<const ClearanceGrid>(nobody, ClearanceGrid::Unknown::kFree, 1.5);
+  told.ghosts = site.ghosts;
+  for (int i = 0; i < 50; ++i) {
+    site.Step();
+    told.Step();
+    EXPECT_TRUE(PassesBy(told.output, {12.0, 1.2})) << i;
+  }
+  EXPECT_FALSE(PassesBy(site.output, {12.0, 1.2}));
+  EXPECT_FALSE(told.collided);
+  EXPECT_LT(told.robot.pose().position.x(), 4.3);
+}
+
 }  // namespace
 }  // namespace hv::navigation

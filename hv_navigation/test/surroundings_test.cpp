@@ -229,5 +229,31 @@ TEST_F(SurroundingsTest, SameCallsGiveTheSameGrids) {
   EXPECT_EQ(first.view().map->grid().cells, second.view().map->grid().cells);
 }
 
+TEST_F(SurroundingsTest, WhoWalksLeavesNoTraceInTheMap) {
+  Surroundings surroundings(config_, clearance_m_);
+  const SolidScene empty = scene_;
+  int told = 0;
+  for (int i = 0; i < 30; ++i) {
+    const double x = 2.2;
+    const double y = -1.5 + 0.1 * i;
+    scene_ = empty;
+    scene_.AddBox({x - 0.2, y - 0.2, 0.0}, {x + 0.2, y + 0.2, 1.8});
+    Scan(surroundings, 0.1 * i);
+    const SurroundingsView& view = surroundings.view();
+    const Vector2d front(x - 0.15, y);
+    EXPECT_TRUE(view.local->OccupiedAt(front)) << i;
+    if (i < 10) continue;
+    told += view.walkers->all().empty() ? 0 : 1;
+    EXPECT_FALSE(view.standing->OccupiedAt(front)) << i;
+    EXPECT_FALSE(view.map->OccupiedAt(front)) << i;
+    EXPECT_TRUE(view.standing->OccupiedAt(Vector2d(4.05, 4.0))) << i;
+  }
+  EXPECT_EQ(told, 20);
+  for (int i = 30; i < 50; ++i) Scan(surroundings, 0.1 * i);
+  // Who stands is an obstacle like any other.
+  EXPECT_TRUE(surroundings.view().standing->OccupiedAt(Vector2d(2.05, 1.4)));
+  EXPECT_TRUE(surroundings.view().map->OccupiedAt(Vector2d(2.05, 1.4)));
+}
+
 }  // namespace
 }  // namespace hv::navigation

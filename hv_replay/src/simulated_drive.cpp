@@ -106,6 +106,7 @@ void SimulatedDrive::Control(DriveCycle& cycle) {
   input.localized = cycle.place && cycle.place->localized;
   input.map = view().map;
   input.local_grid = view().local;
+  input.standing_grid = view().standing;
   input.walkers = view().walkers;
   input.obstacles_stamp = view().obstacles_stamp;
   const Clock::time_point begin = Clock::now();

@@ -24,7 +24,9 @@ struct NavigationInput {
   Velocity velocity;      ///< driven now
   std::shared_ptr<const ClearanceGrid> map;
   std::shared_ptr<const ClearanceGrid> local_grid;
-  std::shared_ptr<const Walkers> walkers;  ///< in the local frame; null: nobody
+  /// The same without those who walk, since plans need not mind them; null where nobody is told.
+  std::shared_ptr<const ClearanceGrid> standing_grid;
+  std::shared_ptr<const Walkers> walkers;  ///< they, in the local frame
   Time obstacles_stamp;  ///< of the oldest among the newest data of the obstacle sensors
 };
 

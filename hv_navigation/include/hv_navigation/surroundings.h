@@ -21,9 +21,10 @@ namespace hv::navigation {
 
 /// What planning needs to know about obstacles, as NavigationInput wants it.
 struct SurroundingsView {
-  std::shared_ptr<const ClearanceGrid> local;  ///< frame of odometry; null before the first scan
-  std::shared_ptr<const Walkers> walkers;      ///< in the same frame; null before the first scan
-  std::shared_ptr<const ClearanceGrid> map;    ///< frame of the map; null while nothing is known
+  std::shared_ptr<const ClearanceGrid> local;     ///< frame of odometry; null before the first scan
+  std::shared_ptr<const ClearanceGrid> standing;  ///< the same without those who walk
+  std::shared_ptr<const Walkers> walkers;         ///< they, in the same frame
+  std::shared_ptr<const ClearanceGrid> map;       ///< frame of the map; null while nothing is known
   Time obstacles_stamp;  ///< of the oldest among the newest data of the sensors
 };
 
@@ -33,7 +34,8 @@ struct DepthInsertReport {
 };
 
 /// Makes the grids that robots are driven by from what the obstacle sensors see: the obstacle map,
-/// the local grid cut from it, and the grid of the map. The same calls give the same grids.
+/// the local grid cut from it, and the grid of the map, in which nobody who walks leaves a trace.
+/// The same calls give the same grids.
 ///
 /// The LiDAR is always needed. The depth camera is from its first image on, or from the start where
 /// DepthConfig::required says so: from then on data of both must be new. A scan without valid

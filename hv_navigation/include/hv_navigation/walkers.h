@@ -37,10 +37,8 @@ class Walkers {
   Walkers(const WalkConfig& config, std::vector<Walker> walkers)
       : config_(config), walkers_(std::move(walkers)) {}
 
+  const WalkConfig& config() const { return config_; }
   const std::vector<Walker>& all() const { return walkers_; }
-
-  /// For how long they are minded [s].
-  double horizon_s() const { return config_.horizon_s; }
 
   /// Whether one of them may touch a robot that is at `pose` then, with its margin.
   bool MayTouch(const Footprint& footprint, const PlanarPose& pose, Time then) const;
