@@ -57,6 +57,9 @@ std::optional<Candidate> DynamicWindow::Turn(double turn) const {
   const double other = turn - std::copysign(2.0 * M_PI, turn);
   Footprint bare = footprint_;
   bare.margin_m = std::min(bare.margin_m, 0.0);
+  const double stop_s = config_.period_s + config_.reaction_s +
+                        std::abs(now_.angular_rps) / limits_.angular_acceleration_rps2;
+  if (!ahead_.OutOfReach(footprint_, pose_, stop_s)) return std::nullopt;
   if (!ahead_.LetStand(footprint_, pose_, 0.0)) return std::nullopt;
   for (const Footprint& footprint : {footprint_, bare}) {
     for (const double way : {turn, other}) {
@@ -84,6 +87,7 @@ bool DynamicWindow::CanStop(Velocity velocity) const {
     time_s += step_s;
     if (ahead_.MayTouch(footprint_, pose, time_s)) return false;
   }
+  if (!ahead_.OutOfReach(footprint_, pose, time_s)) return false;
   return ahead_.LetStand(footprint_, pose, time_s);
 }
 

@@ -12,42 +12,27 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector2i;
 
-/// Cells of another grid with the same cells.
-class Shifted {
- public:
-  Shifted(const OccupancyGrid& grid, const OccupancyGrid& other)
-      : other_(other),
-        offset_(((grid.origin - other.origin) / grid.resolution_m)
-                    .array()
-                    .round()
-                    .cast<int>()
-                    .matrix()) {}
-
-  std::int8_t At(const Vector2i& cell) const {
-    const Vector2i there = cell + offset_;
-    return other_.Contains(there) ? other_.At(there.x(), there.y()) : OccupancyGrid::kUnknown;
-  }
-
- private:
-  const OccupancyGrid& other_;
-  Vector2i offset_;
-};
+std::int8_t StateAt(const OccupancyGrid& grid, const Vector2d& place) {
+  const Vector2i cell = grid.CellOf(place);
+  return grid.Contains(cell) ? grid.At(cell.x(), cell.y()) : OccupancyGrid::kUnknown;
+}
 
 }  // namespace
-
-/// Cells newly taken that lie together.
-struct MovingObstacles::Group {
-  std::vector<Vector2i> cells;
-  Vector2d center = Vector2d::Zero();  ///< [m]
-};
 
 void MovingObstaclesConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("predict", predict, "keep out of the way of what moves");
   visitor.Field("compare_s", compare_s, "time between the grids that are compared [s]");
+  visitor.Field("flicker_s", flicker_s, "what was taken so shortly before is not taken newly [s]");
   visitor.Field("reach_m", reach_m, "distance from the robot up to which it is looked for [m]");
-  visitor.Field("hold_s", hold_s, "what moved is minded when it is not noticed for so long [s]");
   visitor.Field("least_cells", least_cells, "cells newly taken together; fewer are noise");
   visitor.Field("most_cells", most_cells, "cells newly taken together; more are no person");
+  visitor.Field("follow_s", follow_s, "for how long cells newly taken are followed [s]");
+  visitor.Field("least_sightings", least_sightings,
+                "of cells newly taken in a line of motion; fewer are chance");
+  visitor.Field("off_line_m", off_line_m, "by which these may lie beside the line [m]");
+  visitor.Field("hold_s", hold_s, "who moved is minded, when not noticed for so long [s]");
+  visitor.Field("near_m", near_m, "so near to the robot people may not be seen at all [m]");
+  visitor.Field("hold_near_s", hold_near_s, "and are minded for so long [s]");
   visitor.Section("walk", walk, "how it goes on");
 }
 
@@ -57,10 +42,16 @@ void MovingObstaclesConfig::Validate(ConfigProblems& problems) const {
   };
   positive(compare_s, "compare_s");
   positive(reach_m, "reach_m");
+  positive(follow_s, "follow_s");
+  positive(off_line_m, "off_line_m");
+  problems.Require(flicker_s >= 0.0, "moving.flicker_s", "must not be negative");
   problems.Require(hold_s >= 0.0, "moving.hold_s", "must not be negative");
+  problems.Require(near_m >= 0.0, "moving.near_m", "must not be negative");
+  problems.Require(hold_near_s >= hold_s, "moving.hold_near_s", "must be at least moving.hold_s");
   problems.Require(least_cells >= 1, "moving.least_cells", "must be at least 1");
   problems.Require(most_cells >= least_cells, "moving.most_cells",
                    "must be at least moving.least_cells");
+  problems.Require(least_sightings >= 2, "moving.least_sightings", "must be at least 2");
   walk.Validate(problems);
 }
 
@@ -68,105 +59,127 @@ const std::vector<Walker>& MovingObstacles::Track(Time stamp, const OccupancyGri
                                                   const Vector2d& robot) {
   if (!config_.predict) return walkers_;
   if (!past_.empty() && (stamp <= past_.back().stamp || stamp - past_.back().stamp > 1.0)) Clear();
-  std::vector<Walker> noticed;
-  if (const OccupancyGrid* before = GridBefore(stamp)) {
-    for (const Group& group : NewlyTaken(seen, *before, robot)) {
-      const Vector2d direction = DirectionOf(group, seen, *before);
-      if (direction.squaredNorm() > 0.0) noticed.push_back({stamp, group.center, direction});
-    }
+  while (!past_.empty() && stamp - past_.front().stamp > config_.compare_s + config_.flicker_s) {
+    past_.pop_front();
   }
-  Forget(stamp, noticed);
+  while (!sightings_.empty() && stamp - sightings_.front().stamp > config_.follow_s) {
+    sightings_.pop_front();
+  }
+  std::vector<Walker> noticed;
+  std::vector<Sighting> sightings = NewlyTaken(stamp, seen, robot);
+  for (Sighting& sighting : sightings) {
+    Recognise(sighting);
+    if (const std::optional<Walker> walker = Follow(sighting)) noticed.push_back(*walker);
+  }
+  Forget(stamp, robot, noticed);
   walkers_.insert(walkers_.end(), noticed.begin(), noticed.end());
+  sightings_.insert(sightings_.end(), sightings.begin(), sightings.end());
   past_.push_back({stamp, seen});
   return walkers_;
 }
 
+/// Free when it was last compared, and not taken shortly before.
+bool MovingObstacles::IsNew(const Vector2d& place, Time stamp) const {
+  constexpr double kJitter_s = 0.02;
+  bool was_free = false;
+  for (const Past& past : past_) {
+    if (stamp - past.stamp < config_.compare_s - kJitter_s) break;
+    const std::int8_t state = StateAt(past.grid, place);
+    if (OccupancyGrid::IsOccupied(state)) return false;
+    was_free = state == OccupancyGrid::kFree;
+  }
+  return was_free;
+}
+
+std::vector<MovingObstacles::Sighting> MovingObstacles::NewlyTaken(Time stamp,
+                                                                   const OccupancyGrid& seen,
+                                                                   const Vector2d& robot) const {
+  const int reach = static_cast<int>(config_.reach_m / seen.resolution_m);
+  const Vector2i low = seen.CellOf(robot) - Vector2i::Constant(reach);
+  const int side = 2 * reach + 1;
+  cv::Mat taken = cv::Mat::zeros(side, side, CV_8U);
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const Vector2i cell = low + Vector2i(x, y);
+      if (!seen.Contains(cell) || !OccupancyGrid::IsOccupied(seen.At(cell.x(), cell.y()))) continue;
+      if (IsNew(seen.CenterOf(cell), stamp)) taken.at<std::uint8_t>(y, x) = 1;
+    }
+  }
+  cv::Mat labels;
+  cv::Mat statistics;
+  cv::Mat centers;
+  const int groups = cv::connectedComponentsWithStats(taken, labels, statistics, centers, 8);
+  std::vector<Sighting> sightings;
+  for (int group = 1; group < groups; ++group) {
+    const int size = statistics.at<int>(group, cv::CC_STAT_AREA);
+    if (size < config_.least_cells || size > config_.most_cells) continue;
+    const Vector2d center(centers.at<double>(group, 0), centers.at<double>(group, 1));
+    sightings.push_back({stamp, seen.CenterOf(low) + seen.resolution_m * center, false});
+  }
+  return sightings;
+}
+
+/// What is sighted at the same place again has come into view, and stays.
+void MovingObstacles::Recognise(Sighting& sighting) {
+  constexpr double kLeastTime_s = 0.18;
+  const double same_m = config_.walk.least_mps * kLeastTime_s;
+  for (Sighting& before : sightings_) {
+    if (sighting.stamp - before.stamp < kLeastTime_s) break;
+    if ((sighting.place - before.place).norm() > same_m) continue;
+    sighting.stays = before.stays = true;
+  }
+}
+
+/// Whether it is the end of a line of motion: the velocity that most of the sightings agree upon.
+std::optional<Walker> MovingObstacles::Follow(const Sighting& sighting) const {
+  constexpr double kLeastTime_s = 0.25;
+  constexpr double kSlack = 0.3;  // of the speeds
+  std::optional<Walker> walker;
+  if (sighting.stays) return walker;
+  int most = config_.least_sightings - 2;
+  for (const Sighting& before : sightings_) {
+    const double time_s = sighting.stamp - before.stamp;
+    if (time_s < kLeastTime_s) break;
+    if (before.stays) continue;
+    const Vector2d velocity = (sighting.place - before.place) / time_s;
+    const double speed_mps = velocity.norm();
+    if (speed_mps < (1.0 - kSlack) * config_.walk.least_mps ||
+        speed_mps > (1.0 + kSlack) * config_.walk.most_mps) {
+      continue;
+    }
+    const int count = CountInLine(sighting, velocity);
+    if (count <= most) continue;
+    most = count;
+    walker = Walker{sighting.stamp, sighting.place, velocity / speed_mps};
+  }
+  return walker;
+}
+
+/// Times at which something was sighted where it would have been.
+int MovingObstacles::CountInLine(const Sighting& sighting, const Vector2d& velocity) const {
+  int count = 0;
+  std::optional<Time> counted;
+  for (const Sighting& before : sightings_) {
+    if (before.stays || counted == before.stamp) continue;
+    const Vector2d place = sighting.place - (sighting.stamp - before.stamp) * velocity;
+    if ((place - before.place).norm() > config_.off_line_m) continue;
+    ++count;
+    counted = before.stamp;
+  }
+  return count;
+}
+
 /// Those who were not noticed for long, and those who have been noticed anew.
-void MovingObstacles::Forget(Time now, const std::vector<Walker>& noticed) {
+void MovingObstacles::Forget(Time now, const Vector2d& robot, const std::vector<Walker>& noticed) {
   const double same_m = 2.0 * config_.walk.radius_m;
   const auto is_old = [&](const Walker& walker) {
-    return now - walker.stamp > config_.hold_s ||
+    const bool near = Walkers::MayBeNear(config_.walk, walker, robot, config_.near_m, now);
+    return now - walker.stamp > (near ? config_.hold_near_s : config_.hold_s) ||
            std::any_of(noticed.begin(), noticed.end(), [&](const Walker& other) {
              return Walkers::MayBeNear(config_.walk, walker, other.place, same_m, now);
            });
   };
   walkers_.erase(std::remove_if(walkers_.begin(), walkers_.end(), is_old), walkers_.end());
-}
-
-/// The newest one that is old enough.
-const OccupancyGrid* MovingObstacles::GridBefore(Time stamp) {
-  constexpr double kJitter_s = 0.02;
-  const auto old_enough = [&](const Past& past) {
-    return stamp - past.stamp > config_.compare_s - kJitter_s;
-  };
-  while (past_.size() > 1 && old_enough(past_[1])) past_.pop_front();
-  return !past_.empty() && old_enough(past_.front()) ? &past_.front().grid : nullptr;
-}
-
-std::vector<MovingObstacles::Group> MovingObstacles::NewlyTaken(const OccupancyGrid& seen,
-                                                                const OccupancyGrid& before,
-                                                                const Vector2d& robot) const {
-  const Shifted past(seen, before);
-  const Vector2i middle = seen.CellOf(robot);
-  const int reach = static_cast<int>(config_.reach_m / seen.resolution_m);
-  const int side = 2 * reach + 1;
-  cv::Mat taken = cv::Mat::zeros(side, side, CV_8U);
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
-      const Vector2i cell = middle + Vector2i(x - reach, y - reach);
-      if (!seen.Contains(cell) || !OccupancyGrid::IsOccupied(seen.At(cell.x(), cell.y()))) continue;
-      if (past.At(cell) == OccupancyGrid::kFree) taken.at<std::uint8_t>(y, x) = 1;
-    }
-  }
-  cv::Mat labels;
-  std::vector<Group> groups(static_cast<std::size_t>(cv::connectedComponents(taken, labels, 8)));
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) {
-      const int label = labels.at<int>(y, x);
-      if (label == 0) continue;
-      const Vector2i cell = middle + Vector2i(x - reach, y - reach);
-      groups[static_cast<std::size_t>(label)].cells.push_back(cell);
-      groups[static_cast<std::size_t>(label)].center += seen.CenterOf(cell);
-    }
-  }
-  std::vector<Group> kept;
-  for (Group& group : groups) {
-    const int size = static_cast<int>(group.cells.size());
-    if (size < config_.least_cells || size > config_.most_cells) continue;
-    group.center /= size;
-    kept.push_back(std::move(group));
-  }
-  return kept;
-}
-
-/// From what it has left; where that cannot be seen, as behind who comes nearer, from where it was.
-/// Zero for what has only come into view.
-Vector2d MovingObstacles::DirectionOf(const Group& group, const OccupancyGrid& seen,
-                                      const OccupancyGrid& before) const {
-  constexpr int kLeastCells = 2;
-  const double around_m = 2.0 * config_.walk.radius_m + config_.walk.most_mps * config_.compare_s;
-  const Shifted past(seen, before);
-  const Vector2i middle = seen.CellOf(group.center);
-  const int reach = static_cast<int>(around_m / seen.resolution_m);
-  Vector2d left = Vector2d::Zero();
-  Vector2d was = Vector2d::Zero();
-  int left_cells = 0;
-  int was_cells = 0;
-  for (int y = -reach; y <= reach; ++y) {
-    for (int x = -reach; x <= reach; ++x) {
-      const Vector2i cell = middle + Vector2i(x, y);
-      if (!seen.Contains(cell) || !OccupancyGrid::IsOccupied(past.At(cell))) continue;
-      const Vector2d away = seen.CenterOf(cell) - group.center;
-      if (away.norm() > around_m) continue;
-      was += away;
-      ++was_cells;
-      if (seen.At(cell.x(), cell.y()) != OccupancyGrid::kFree) continue;
-      left += away;
-      ++left_cells;
-    }
-  }
-  if (left_cells >= kLeastCells) return -left.normalized();
-  return was_cells >= kLeastCells ? Vector2d(-was.normalized()) : Vector2d::Zero();
 }
 
 }  // namespace hv::navigation

@@ -69,11 +69,19 @@ double Distance(const Box& box, const Stretch& stretch) {
   return distance;
 }
 
+Box BoxOf(const Footprint& footprint) {
+  const double side_m = footprint.half_width_m + footprint.margin_m;
+  return {{-footprint.back_m - footprint.margin_m, -side_m},
+          {footprint.front_m + footprint.margin_m, side_m}};
+}
+
 }  // namespace
 
 void WalkConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("least_mps", least_mps, "slowest that people walk [m/s]");
   visitor.Field("most_mps", most_mps, "and fastest [m/s]");
+  visitor.Field("any_way_mps", any_way_mps,
+                "as long as the robot moves, they may come from any side as fast [m/s]");
   visitor.Field("horizon_s", horizon_s, "they go on straight for so long [s]");
   visitor.Field("radius_m", radius_m, "of a person [m]");
 }
@@ -81,6 +89,7 @@ void WalkConfig::Describe(ConfigVisitor& visitor) {
 void WalkConfig::Validate(ConfigProblems& problems) const {
   problems.Require(least_mps >= 0.0, "walk.least_mps", "must not be negative");
   problems.Require(most_mps >= least_mps, "walk.most_mps", "must be at least walk.least_mps");
+  problems.Require(any_way_mps >= 0.0, "walk.any_way_mps", "must not be negative");
   problems.Require(horizon_s > 0.0, "walk.horizon_s", "must be positive");
   problems.Require(radius_m > 0.0, "walk.radius_m", "must be positive");
 }
@@ -88,14 +97,22 @@ void WalkConfig::Validate(ConfigProblems& problems) const {
 bool Walkers::MayTouch(const Footprint& footprint, const PlanarPose& pose, Time then) const {
   if (walkers_.empty()) return false;
   const double reach_m = footprint.CircumscribedRadius() + config_.radius_m;
-  const double side_m = footprint.half_width_m + footprint.margin_m;
-  const Box robot{{-footprint.back_m - footprint.margin_m, -side_m},
-                  {footprint.front_m + footprint.margin_m, side_m}};
+  const Box robot = BoxOf(footprint);
   const PlanarPose T_robot = pose.Inverse();
   return std::any_of(walkers_.begin(), walkers_.end(), [&](const Walker& walker) {
     const Stretch stretch = StretchOf(config_, walker, then);
     if (DistanceTo(stretch, pose.position) > reach_m) return false;
     return Distance(robot, {T_robot * stretch.from, T_robot * stretch.to}) <= config_.radius_m;
+  });
+}
+
+bool Walkers::MayReach(const Footprint& footprint, const PlanarPose& pose, Time then) const {
+  if (walkers_.empty()) return false;
+  const Box robot = BoxOf(footprint);
+  const PlanarPose T_robot = pose.Inverse();
+  return std::any_of(walkers_.begin(), walkers_.end(), [&](const Walker& walker) {
+    const double gone_m = config_.any_way_mps * std::max(0.0, then - walker.stamp);
+    return robot.DistanceTo(T_robot * walker.place) <= config_.radius_m + gone_m;
   });
 }
 

@@ -86,14 +86,23 @@ TEST_F(MovingObstaclesTest, TwoWhoPassAreTwo) {
 }
 
 TEST_F(MovingObstaclesTest, WhoIsNotNoticedForAMomentIsStillMinded) {
-  ASSERT_FALSE(Walk({-1.0, 0.0}, {1.0, 0.0}).empty());
-  OccupancyGrid grid = FreeGrid();
-  AddDisc(grid, {0.2, 0.0}, 0.25);
-  // Standing still by now: nothing is newly taken.
-  int minded = 0;
-  for (int i = 0; i < 20; ++i) minded += Show(grid).empty() ? 0 : 1;
-  EXPECT_GE(minded * kPeriod_s, config_.hold_s - kPeriod_s);
-  EXPECT_LE(minded * kPeriod_s, config_.hold_s + config_.compare_s + 2.0 * kPeriod_s);
+  const auto minded_s = [&](double x_m, double y_m) {
+    moving_.Clear();
+    time_s_ += 10.0;
+    EXPECT_FALSE(Walk({x_m - 1.2, y_m}, {1.0, 0.0}).empty());
+    OccupancyGrid grid = FreeGrid();
+    AddDisc(grid, {x_m, y_m}, 0.25);
+    // Standing still by now: nothing is newly taken.
+    int minded = 0;
+    for (int i = 0; i < 30; ++i) minded += Show(grid).empty() ? 0 : 1;
+    return minded * kPeriod_s;
+  };
+  const double noticed_s = config_.compare_s + 2.0 * kPeriod_s;
+  EXPECT_GE(minded_s(0.5, 3.0), config_.hold_s - kPeriod_s);
+  EXPECT_LE(minded_s(0.5, 3.0), config_.hold_s + noticed_s);
+  // Who got out of sight on the way to the robot takes longer to get past it.
+  EXPECT_GE(minded_s(-0.9, 0.0), config_.hold_s + 2.0 * noticed_s);
+  EXPECT_LE(minded_s(-0.9, 0.0), config_.hold_near_s + noticed_s);
 }
 
 TEST_F(MovingObstaclesTest, WhatStandsGoesNowhere) {

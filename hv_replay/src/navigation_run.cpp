@@ -95,7 +95,7 @@ NavigationRun::NavigationRun(const SlamConfig& config, sim::World world,
       options_.out + "/cycles.csv",
       "stamp,trial,state,x,y,yaw,true_x,true_y,true_yaw,linear_mps,angular_rps,command_linear,"
       "command_angular,remaining_m,localized,plan_ms,control_ms,grids_ms,update_ms,depth_ms,"
-      "octree_nodes,reason");
+      "octree_nodes,walkers,reason");
 }
 
 std::vector<NavigationTrial> NavigationRun::Run() {
@@ -273,13 +273,13 @@ void NavigationRun::Log(const DriveCycle& cycle, int trial) {
   char text[512];
   std::snprintf(text, sizeof(text),
                 ",%d,%s,%.3f,%.3f,%.4f,%.3f,%.3f,%.4f,%.3f,%.3f,%.3f,%.3f,%.2f,%d,%.2f,%.2f,%.2f,"
-                "%.2f,%.2f,%zu,",
+                "%.2f,%.2f,%zu,%zu,",
                 trial, navigation::ToString(output.state), place.position.x(), place.position.y(),
                 place.yaw, truth.position.x(), truth.position.y(), truth.yaw, velocity.linear_mps,
                 velocity.angular_rps, output.velocity.linear_mps, output.velocity.angular_rps,
                 output.remaining_m, cycle.place && cycle.place->localized ? 1 : 0,
                 output.planning_ms.value_or(0.0), cycle.control_ms, cycle.grids_ms,
-                sum(cycle.update_ms), sum(cycle.depth_ms), cycle.octree_nodes);
+                sum(cycle.update_ms), sum(cycle.depth_ms), cycle.octree_nodes, cycle.walkers);
   cycle_log_->Append(ToString(cycle.stamp) + text + '"' + output.reason + '"');
 }
 

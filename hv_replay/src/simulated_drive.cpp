@@ -115,6 +115,7 @@ void SimulatedDrive::Control(DriveCycle& cycle) {
   if (cycle.output.clear_local_grid) surroundings_.ForgetObstacles();
   simulation_.Command({cycle.output.velocity.linear_mps, cycle.output.velocity.angular_rps});
   cycle.T_world_base = simulation_.State().T_world_body;
+  cycle.walkers = view().walkers ? view().walkers->all().size() : 0;
   cycle.octree_nodes = surroundings_.obstacle_map().node_count();
 }
 

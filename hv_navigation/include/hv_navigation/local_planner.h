@@ -70,6 +70,10 @@ struct ObstaclesAhead {
   /// Whether the robot with its margin may touch anything at `pose`, where it is `after_s` from
   /// now.
   bool MayTouch(const Footprint& footprint, const PlanarPose& pose, double after_s) const;
+  /// Whether those who walk, and may turn, cannot get to the robot by then.
+  bool OutOfReach(const Footprint& footprint, const PlanarPose& pose, double after_s) const {
+    return walkers == nullptr || !walkers->MayReach(footprint, pose, now + after_s);
+  }
   /// Whether those who walk let a robot stand at `pose` from `from_s` from now on.
   bool LetStand(const Footprint& footprint, const PlanarPose& pose, double from_s) const;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,20 +17,26 @@ namespace hv::navigation {
 /// How what moves is told from what stands, and how it goes on.
 struct MovingObstaclesConfig {
   bool predict = true;
-  double compare_s = 0.4;  ///< between the grids that are compared
-  double reach_m = 4.0;    ///< around the robot
-  double hold_s = 0.6;     ///< what moved is minded, when it is not noticed for a moment
-  int least_cells = 2;     ///< fewer that are taken newly are noise
-  int most_cells = 60;     ///< more are an error of the pose
+  double compare_s = 0.4;    ///< between the grids that are compared
+  double flicker_s = 1.0;    ///< what was taken so shortly before is not taken newly
+  double reach_m = 4.0;      ///< around the robot
+  int least_cells = 2;       ///< fewer that are taken newly are noise
+  int most_cells = 60;       ///< more are an error of the pose
+  double follow_s = 0.8;     ///< for how long cells newly taken are followed
+  int least_sightings = 4;   ///< of cells newly taken in a line of motion; fewer are chance
+  double off_line_m = 0.2;   ///< by which these may lie beside the line
+  double hold_s = 0.6;       ///< who moved is minded, when not noticed for a moment
+  double near_m = 1.0;       ///< so near to the robot people may not be seen at all
+  double hold_near_s = 2.0;  ///< and are minded longer
   WalkConfig walk;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
 };
 
-/// Tells what moves around the robot, people above all, from grids of obstacles some time apart:
-/// it takes cells that were seen free, and leaves others behind. Speeds are not measured. Not
-/// thread-safe.
+/// Tells what moves around the robot, people above all, from grids of obstacles: it takes cells
+/// that were seen free, again and again along a line, at the pace of a walk. What only comes into
+/// view takes cells too, but does not get on. Not thread-safe.
 class MovingObstacles {
  public:
   explicit MovingObstacles(const MovingObstaclesConfig& config) : config_(config) {}
@@ -41,6 +48,7 @@ class MovingObstacles {
 
   void Clear() {
     past_.clear();
+    sightings_.clear();
     walkers_.clear();
   }
 
@@ -49,18 +57,25 @@ class MovingObstacles {
     Time stamp;
     OccupancyGrid grid;
   };
-  struct Group;
+  /// The middle of cells newly taken that lie together [m].
+  struct Sighting {
+    Time stamp;
+    Eigen::Vector2d place;
+    bool stays;  ///< it was at the same place before, or is there afterwards
+  };
 
-  const OccupancyGrid* GridBefore(Time stamp);
-  std::vector<Group> NewlyTaken(const OccupancyGrid& seen, const OccupancyGrid& before,
-                                const Eigen::Vector2d& robot) const;
-  Eigen::Vector2d DirectionOf(const Group& group, const OccupancyGrid& seen,
-                              const OccupancyGrid& before) const;
-  void Forget(Time now, const std::vector<Walker>& noticed);
+  std::vector<Sighting> NewlyTaken(Time stamp, const OccupancyGrid& seen,
+                                   const Eigen::Vector2d& robot) const;
+  bool IsNew(const Eigen::Vector2d& place, Time stamp) const;
+  void Recognise(Sighting& sighting);
+  std::optional<Walker> Follow(const Sighting& sighting) const;
+  int CountInLine(const Sighting& sighting, const Eigen::Vector2d& velocity) const;
+  void Forget(Time now, const Eigen::Vector2d& robot, const std::vector<Walker>& noticed);
 
   MovingObstaclesConfig config_;
-  std::deque<Past> past_;        ///< oldest first
-  std::vector<Walker> walkers_;  ///< noticed of late, oldest first
+  std::deque<Past> past_;           ///< oldest first
+  std::deque<Sighting> sightings_;  ///< of late, oldest first
+  std::vector<Walker> walkers_;     ///< noticed of late, oldest first
 };
 
 }  // namespace hv::navigation

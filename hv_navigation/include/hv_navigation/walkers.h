@@ -12,10 +12,12 @@
 
 namespace hv::navigation {
 
-/// How those who walk are taken to go on: straight, at a speed between two bounds.
+/// How those who walk are taken to go on: straight, at a speed between two bounds; or, as long as
+/// the robot moves, any way.
 struct WalkConfig {
   double least_mps = 0.6;
   double most_mps = 1.3;
+  double any_way_mps = 0.9;
   double horizon_s = 1.5;
   double radius_m = 0.3;
 
@@ -40,8 +42,10 @@ class Walkers {
   const WalkConfig& config() const { return config_; }
   const std::vector<Walker>& all() const { return walkers_; }
 
-  /// Whether one of them may touch a robot that is at `pose` then, with its margin.
+  /// Whether one of them may touch a robot that is at `pose` then, with its margin, walking on.
   bool MayTouch(const Footprint& footprint, const PlanarPose& pose, Time then) const;
+  /// The same for who may turn.
+  bool MayReach(const Footprint& footprint, const PlanarPose& pose, Time then) const;
 
   /// Whether `walker` may be within `distance_m` of `place` then.
   static bool MayBeNear(const WalkConfig& config, const Walker& walker,

@@ -27,6 +27,7 @@ struct DriveCycle {
   double grids_ms = 0.0;          ///< for the 2-D grids
   double control_ms = 0.0;        ///< for the navigator without plans
   std::size_t octree_nodes = 0;
+  std::size_t walkers = 0;  ///< who are noticed
   bool moved_on = true;  ///< odometry was not interrupted
 };
 
