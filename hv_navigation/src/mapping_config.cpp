@@ -92,11 +92,16 @@ void GroundConfig::Validate(ConfigProblems& problems) const {
 
 void ObstacleGridConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("side_m", side_m, "of the square around the robot that is seen as a grid [m]");
+  visitor.Field("near_side_m", near_side_m, "of the square that is made anew for every scan [m]");
+  visitor.Field("whole_period_s", whole_period_s, "the whole square is made anew as often [s]");
   visitor.Field("robot_height_m", robot_height_m, "height of the robot [m]");
   visitor.Field("height_margin_m", height_margin_m, "kept free above the robot [m]");
 }
 
 void ObstacleGridConfig::Validate(ConfigProblems& problems) const {
+  problems.Require(near_side_m >= 4.0 && near_side_m <= side_m, "obstacle_grid.near_side_m",
+                   "must lie within 4 and obstacle_grid.side_m");
+  problems.Require(whole_period_s >= 0.0, "obstacle_grid.whole_period_s", "must not be negative");
   problems.Require(side_m >= 4.0 && side_m <= 200.0, "obstacle_grid.side_m",
                    "must lie between 4 and 200");
   problems.Require(robot_height_m > 0.0, "obstacle_grid.robot_height_m", "must be positive");

@@ -81,11 +81,22 @@ void Surroundings::UpdateStamp() {
   view_.obstacles_stamp = depth_stamp_ ? std::min(*scan_stamp_, *depth_stamp_) : *scan_stamp_;
 }
 
+/// What is far away changes little from scan to scan, and is most of the work.
+double Surroundings::SideNow() {
+  constexpr double kJitter_s = 0.02;
+  const bool whole =
+      !whole_stamp_ || *scan_stamp_ < *whole_stamp_ ||
+      *scan_stamp_ - *whole_stamp_ > config_.obstacle_grid.whole_period_s - kJitter_s;
+  if (!whole) return config_.obstacle_grid.near_side_m;
+  whole_stamp_ = scan_stamp_;
+  return config_.obstacle_grid.side_m;
+}
+
 const SurroundingsView& Surroundings::Update(const Pose& T_odom_base,
                                              const std::optional<Pose>& T_map_odom) {
   if (!scanned_ || !T_odom_base.matrix().allFinite()) return view_;
-  OccupancyGrid seen = MakeObstacleGrid(obstacles_, config_.ground, config_.obstacle_grid,
-                                        T_odom_base, config_.obstacle_grid.side_m);
+  OccupancyGrid seen =
+      MakeObstacleGrid(obstacles_, config_.ground, config_.obstacle_grid, T_odom_base, SideNow());
   const Eigen::Vector2d robot = T_odom_base.translation().head<2>();
   view_.walkers = std::make_shared<const Walkers>(config_.moving.walk,
                                                   moving_.Track(*scan_stamp_, seen, robot));
@@ -121,6 +132,7 @@ void Surroundings::ForgetObstacles() {
   obstacles_ = ObstacleMap(config_.obstacle_map);
   moving_.Clear();
   scanned_ = false;
+  whole_stamp_.reset();
 }
 
 void Surroundings::ForgetViews() {

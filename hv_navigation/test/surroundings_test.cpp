@@ -229,6 +229,25 @@ TEST_F(SurroundingsTest, SameCallsGiveTheSameGrids) {
   EXPECT_EQ(first.view().map->grid().cells, second.view().map->grid().cells);
 }
 
+TEST_F(SurroundingsTest, WhatIsFarIsSeenNowAndThen) {
+  scene_ = SolidScene();
+  scene_.AddFloor(-30.0, 30.0);
+  scene_.AddBox({10.0, -5.0, 0.0}, {10.4, 5.0, 2.0});
+  Surroundings surroundings(config_, clearance_m_);
+  const Vector2d far(10.05, 0.0);
+  int seen = 0;
+  for (int i = 0; i < 20; ++i) {
+    Scan(surroundings, 0.1 * i);
+    seen += surroundings.view().local->OccupiedAt(far) ? 1 : 0;
+    // Marked by the second view.
+    EXPECT_EQ(surroundings.view().map->OccupiedAt(far), i >= 5) << i;
+  }
+  EXPECT_EQ(seen, 4);
+  surroundings.ForgetObstacles();
+  Scan(surroundings, 2.1);
+  EXPECT_TRUE(surroundings.view().local->OccupiedAt(far));
+}
+
 TEST_F(SurroundingsTest, WhoWalksLeavesNoTraceInTheMap) {
   Surroundings surroundings(config_, clearance_m_);
   const SolidScene empty = scene_;

@@ -61,7 +61,9 @@ struct GroundConfig {
 
 /// The 2-D grids of obstacles.
 struct ObstacleGridConfig {
-  double side_m = 30.0;  ///< of the square around the robot
+  double side_m = 30.0;         ///< of the square around the robot
+  double near_side_m = 14.0;    ///< of the square that is made anew for every scan
+  double whole_period_s = 0.5;  ///< all of it is made anew as often
   double robot_height_m = 0.8;
   double height_margin_m = 0.1;  ///< kept free above the robot
 

@@ -57,7 +57,8 @@ class Surroundings {
   DepthInsertReport AddDepth(const DepthImage& image, const DepthCameraModel& camera,
                              const Pose& T_odom_optical, const Pose& T_odom_base);
 
-  /// Makes the grids anew; to be called once a scan, since the grid of the map counts views.
+  /// Makes the grids anew, far from the robot not every time; to be called once a scan, since the
+  /// grid of the map counts views.
   /// Without a place in the map that grid stays as it is, and after ForgetObstacles() both stay
   /// until the next scan.
   const SurroundingsView& Update(const Pose& T_odom_base, const std::optional<Pose>& T_map_odom);
@@ -74,6 +75,7 @@ class Surroundings {
   std::size_t cells_left_out() const { return global_.left_out(); }
 
  private:
+  double SideNow();
   void UpdateStamp();
   void UpdateMap();
 
@@ -85,7 +87,8 @@ class Surroundings {
   MovingObstacles moving_;
   std::optional<Time> scan_stamp_;
   std::optional<Time> depth_stamp_;
-  bool scanned_ = false;  ///< since obstacles were forgotten
+  std::optional<Time> whole_stamp_;  ///< when grids last reached as far as they can
+  bool scanned_ = false;             ///< since obstacles were forgotten
   SurroundingsView view_;
 };
 
