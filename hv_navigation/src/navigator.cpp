@@ -13,11 +13,10 @@ PlanarPose LocalFromMap(const NavigationInput& input) {
   return input.T_local_base * input.T_map_base.Inverse();
 }
 
-constexpr std::size_t kMostMemories = 4;
-
 /// What plans have to lead around.
-const std::shared_ptr<const ClearanceGrid>& Standing(const NavigationInput& input) {
-  return input.standing_grid ? input.standing_grid : input.local_grid;
+SeenObstacles Standing(const NavigationInput& input) {
+  return {input.standing_grid ? input.standing_grid : input.local_grid,
+          LocalFromMap(input).Inverse()};
 }
 
 bool Within(const std::optional<Time>& since, Time now, double duration_s) {
@@ -77,6 +76,7 @@ Navigator::Navigator(const PlanningConfig& config, PlanningWorker::Mode mode)
     : config_(config),
       local_(config.local, config.limits, config.footprint),
       recovery_(std::make_unique<Recovery>(config.navigator, local_)),
+      memory_(config.navigator.remember_s),
       worker_(GlobalPlanner(config.global, config.footprint), mode) {}
 
 Navigator::~Navigator() = default;
@@ -157,7 +157,7 @@ void Navigator::CheckPath(const NavigationInput& input) {
   if (!course_) return;
   constexpr double kWholePath_m = 1e6;
   const bool seen_free =
-      local_.PathIsFree(*Standing(input), PlanarPose(), config_.navigator.check_ahead_m);
+      local_.PathIsFree(*Standing(input).grid, PlanarPose(), config_.navigator.check_ahead_m);
   const bool known_free =
       input.map == course_->map ||
       local_.PathIsFree(*input.map, course_->T_local_map.Inverse(), kWholePath_m);
@@ -165,8 +165,7 @@ void Navigator::CheckPath(const NavigationInput& input) {
   const bool blocked = !seen_free || !known_free;
   if (blocked && !course_->blocked) pursuit_->requested.reset();
   if (!seen_free && !course_->blocked) {
-    memories_.push_front({{Standing(input), LocalFromMap(input).Inverse()}, input.now});
-    if (memories_.size() > kMostMemories) memories_.pop_back();
+    memory_.Add(input.now, Standing(input).MissingIn(*input.map));
   }
   course_->blocked = blocked;
 }
@@ -179,12 +178,8 @@ PlanningJob Navigator::JobNow(const NavigationInput& input) const {
   job.request.goal_tolerance_m = config_.navigator.goal_slack_m;
   job.request.yaw_tolerance = config_.navigator.goal_yaw_slack;
   job.map = input.map;
-  job.seen.push_back({Standing(input), LocalFromMap(input).Inverse()});
-  for (const Memory& memory : memories_) {
-    if (Within(memory.stamp, input.now, config_.navigator.remember_s)) {
-      job.seen.push_back(memory.seen);
-    }
-  }
+  job.seen = Standing(input);
+  job.remembered = memory_.Places();
   return job;
 }
 
@@ -195,6 +190,7 @@ void Navigator::ConsiderPlanning(const NavigationInput& input) {
   const double period_s = urgent ? config_.navigator.retry_s : config_.navigator.replan_s;
   const bool first = !pursuit_->requested.has_value();
   if (!first && (Within(pursuit_->requested, input.now, period_s) || worker_.Busy())) return;
+  memory_.Review(input.now, Standing(input));
   worker_.Request(JobNow(input));
   pursuit_->requested = input.now;
 }

@@ -6,40 +6,17 @@
 
 namespace hv::navigation {
 
-namespace {
-
-bool IsSeenFree(const SeenObstacles& seen, const Eigen::Vector2d& place) {
-  const Eigen::Vector2i cell = seen.grid->CellOf(seen.T_map_grid.Inverse() * place);
-  if (!seen.grid->Contains(cell)) return false;
-  const std::int8_t value = seen.grid->grid().At(cell.x(), cell.y());
-  return value != OccupancyGrid::kUnknown && !OccupancyGrid::IsOccupied(value);
-}
-
-void AddObstacles(const ClearanceGrid& map, const SeenObstacles& seen, const SeenObstacles* newer,
-                  std::vector<Eigen::Vector2i>& added) {
-  const OccupancyGrid& cells = seen.grid->grid();
-  const double known_m = 1.5 * map.grid().resolution_m;
-  for (int row = 0; row < cells.height; ++row) {
-    for (int column = 0; column < cells.width; ++column) {
-      if (!OccupancyGrid::IsOccupied(cells.At(column, row))) continue;
-      const Eigen::Vector2d place = seen.T_map_grid * seen.grid->CenterOf({column, row});
-      const Eigen::Vector2i cell = map.CellOf(place);
-      if (!map.Contains(cell) || map.ClearanceAt(cell) <= known_m) continue;
-      if (newer == nullptr || !IsSeenFree(*newer, place)) added.push_back(cell);
-    }
+std::shared_ptr<const ClearanceGrid> WithObstaclesOf(const PlanningJob& job) {
+  std::vector<Eigen::Vector2i> cells;
+  for (const Eigen::Vector2d& place : job.seen.MissingIn(*job.map)) {
+    cells.push_back(job.map->CellOf(place));
   }
-}
-
-}  // namespace
-
-std::shared_ptr<const ClearanceGrid> WithSeenObstacles(const PlanningJob& job) {
-  std::vector<Eigen::Vector2i> added;
-  for (const SeenObstacles& seen : job.seen) {
-    const bool newest = &seen == &job.seen.front();
-    AddObstacles(*job.map, seen, newest ? nullptr : &job.seen.front(), added);
+  for (const Eigen::Vector2d& place : job.remembered) {
+    const Eigen::Vector2i cell = job.map->CellOf(place);
+    if (job.map->Contains(cell)) cells.push_back(cell);
   }
-  if (added.empty()) return job.map;
-  return std::make_shared<const ClearanceGrid>(job.map->WithObstacles(added));
+  if (cells.empty()) return job.map;
+  return std::make_shared<const ClearanceGrid>(job.map->WithObstacles(cells));
 }
 
 PlanningWorker::PlanningWorker(const GlobalPlanner& planner, Mode mode)
@@ -58,7 +35,7 @@ PlanningWorker::~PlanningWorker() {
 
 FinishedPlan PlanningWorker::Run(const PlanningJob& job) const {
   const auto begin = std::chrono::steady_clock::now();
-  const auto grid = WithSeenObstacles(job);
+  const auto grid = WithObstaclesOf(job);
   FinishedPlan finished{job.goal_id, planner_.Plan(*grid, job.request), grid != job.map, 0.0};
   const std::chrono::duration<double, std::milli> taken = std::chrono::steady_clock::now() - begin;
   finished.planning_ms = taken.count();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +7,7 @@
 #include "hv_core/time.h"
 #include "hv_navigation/global_planner.h"
 #include "hv_navigation/local_planner.h"
+#include "hv_navigation/obstacle_memory.h"
 #include "hv_navigation/planning_config.h"
 #include "hv_navigation/planning_worker.h"
 
@@ -121,18 +121,13 @@ class Navigator {
     bool blocked = false;
     bool strayed = false;
   };
-  struct Memory {
-    SeenObstacles seen;
-    Time stamp;
-  };
-
   PlanningConfig config_;
   LocalPlanner local_;
   std::unique_ptr<Recovery> recovery_;
   int goal_id_ = 0;
   std::optional<Pursuit> pursuit_;
   std::optional<Course> course_;
-  std::deque<Memory> memories_;  ///< of what blocked paths, newest first
+  ObstacleMemory memory_;  ///< of what blocked paths
   std::optional<Time> inputs_lost_since_;
   bool cancel_ = false;
   PlanningWorker worker_;

@@ -8,21 +8,17 @@
 #include <vector>
 
 #include "hv_navigation/global_planner.h"
+#include "hv_navigation/obstacle_memory.h"
 
 namespace hv::navigation {
-
-/// Obstacles around the robot, as it saw them at some time.
-struct SeenObstacles {
-  std::shared_ptr<const ClearanceGrid> grid;
-  PlanarPose T_map_grid;
-};
 
 /// All that a plan depends on.
 struct PlanningJob {
   int goal_id = 0;  ///< comes back with the plan
   PlanRequest request;
   std::shared_ptr<const ClearanceGrid> map;
-  std::vector<SeenObstacles> seen;  ///< newest first: what it sees overrules what others saw there
+  SeenObstacles seen;
+  std::vector<Eigen::Vector2d> remembered;  ///< places in the map where obstacles were
 };
 
 struct FinishedPlan {
@@ -32,8 +28,8 @@ struct FinishedPlan {
   double planning_ms = 0.0;     ///< with the time to mind them
 };
 
-/// The map with the obstacles seen. The same pointer when these add nothing.
-std::shared_ptr<const ClearanceGrid> WithSeenObstacles(const PlanningJob& job);
+/// The map with the obstacles seen and remembered. The same pointer when these add nothing.
+std::shared_ptr<const ClearanceGrid> WithObstaclesOf(const PlanningJob& job);
 
 /// Runs a planner, in a thread of its own or at once. One job runs at a time and one may wait; a
 /// newer one takes the place of the waiting one, and a newer result that of an older one not taken.
