@@ -87,7 +87,10 @@ bool DynamicWindow::CanStop(Velocity velocity) const {
     time_s += step_s;
     if (ahead_.MayTouch(footprint_, pose, time_s)) return false;
   }
-  if (!ahead_.OutOfReach(footprint_, pose, time_s)) return false;
+  // Who stands does not start for a moment.
+  constexpr double kStart_s = 0.5;
+  const double before_s = Stands(now_) ? time_s + kStart_s : time_s;
+  if (!ahead_.OutOfReach(footprint_, pose, before_s)) return false;
   return ahead_.LetStand(footprint_, pose, time_s);
 }
 

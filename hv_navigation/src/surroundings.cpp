@@ -11,9 +11,23 @@ using Unknown = ClearanceGrid::Unknown;
 
 namespace {
 
+constexpr double kAround_m = 0.2;  // of a person, for swinging arms and the size of cells
+
+/// Leaves out points on those who walk. The LiDAR sees them, and sees when they are gone; of their
+/// feet it would not.
+void LeaveOut(const Walkers& walkers, Time now, const Pose& T_odom_optical,
+              std::vector<Point>& points) {
+  const double person_m = walkers.config().radius_m + kAround_m;
+  const auto on_walker = [&](const Point& point) {
+    const Eigen::Vector3d at =
+        T_odom_optical * Eigen::Vector3f(point.x, point.y, point.z).cast<double>();
+    return walkers.MayBeNear(at.head<2>(), person_m, now);
+  };
+  points.erase(std::remove_if(points.begin(), points.end(), on_walker), points.end());
+}
+
 /// Makes unknown what is where those who walk may be; gives the cells that changed.
 std::optional<CellBox> TakeOut(const Walkers& walkers, Time now, OccupancyGrid& grid) {
-  constexpr double kAround_m = 0.2;  // of a person, for swinging arms and the size of cells
   const WalkConfig& config = walkers.config();
   std::optional<CellBox> changed;
   for (const Walker& walker : walkers.all()) {
@@ -65,9 +79,10 @@ InsertReport Surroundings::AddScan(Time stamp, const std::vector<Point>& points,
 DepthInsertReport Surroundings::AddDepth(const DepthImage& image, const DepthCameraModel& camera,
                                          const Pose& T_odom_optical, const Pose& T_odom_base) {
   DepthInsertReport report;
-  const DepthCloud cloud = ProjectDepth(image, camera, config_.depth_image);
+  DepthCloud cloud = ProjectDepth(image, camera, config_.depth_image);
   report.image = cloud.report;
   if (cloud.report.refused) return report;
+  if (view_.walkers) LeaveOut(*view_.walkers, image.stamp, T_odom_optical, cloud.points);
   obstacles_.MoveTo(T_odom_base.translation());
   report.points = obstacles_.Insert(Sensor::kDepthCamera, cloud.points, T_odom_optical);
   if (report.points.refused) return report;

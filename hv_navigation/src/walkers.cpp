@@ -116,6 +116,12 @@ bool Walkers::MayReach(const Footprint& footprint, const PlanarPose& pose, Time 
   });
 }
 
+bool Walkers::MayBeNear(const Vector2d& place, double distance_m, Time then) const {
+  return std::any_of(walkers_.begin(), walkers_.end(), [&](const Walker& walker) {
+    return MayBeNear(config_, walker, place, distance_m, then);
+  });
+}
+
 bool Walkers::MayBeNear(const WalkConfig& config, const Walker& walker, const Vector2d& place,
                         double distance_m, Time then) {
   return DistanceTo(StretchOf(config, walker, then), place) <= distance_m;

@@ -9,6 +9,7 @@
 #include "hv_core/map_folder.h"
 #include "hv_replay/console.h"
 #include "hv_replay/drive_picture.h"
+#include "hv_replay/mapped_start.h"
 #include "hv_replay/result_files.h"
 #include "hv_replay/trajectory_error.h"
 
@@ -44,11 +45,27 @@ std::optional<OccupancyGrid> SavedGrid(const std::string& map) {
   return MapFolder::Open(map).ReadGrid();
 }
 
+/// With a map, the robot starts where that was made.
+sim::LiveConfig Started(const sim::LiveConfig& simulation, const sim::World& world,
+                        const NavigationRunOptions& options, const Pose& T_map_world) {
+  if (options.map.empty()) return simulation;
+  return WithMappedStart(simulation, world, MapFolder::Open(options.map).ReadPoses(), T_map_world);
+}
+
+/// The robot is told about where it is, since places of many buildings are alike.
 std::unique_ptr<RobotLocator> MakeLocator(const SlamConfig& config,
                                           const NavigationRunOptions& options,
-                                          const sim::SensorRig& rig, const Pose& T_map_world) {
+                                          const sim::LiveConfig& simulation,
+                                          const Pose& T_map_world) {
+  const sim::SensorRig rig = sim::MakeRig(simulation.suite);
   if (options.truth_pose) return LocateByTruth(T_map_world, rig);
-  return LocateBySensors(config, options.map, rig);
+  if (options.map.empty()) return LocateBySensors(config, "", rig);
+  const std::vector<double>& start = simulation.start;
+  const Eigen::Vector3d error(0.4, -0.3, 0.0);
+  constexpr double kTurned_deg = 8.0;
+  const Pose told = MakePose(RotationFromRpy(0.0, 0.0, (start[3] + kTurned_deg) * M_PI / 180.0),
+                             Eigen::Vector3d(start[0], start[1], start[2]) + error);
+  return LocateBySensors(config, options.map, rig, T_map_world * told);
 }
 
 const char* NameOf(sim::ContactKind kind) {
@@ -84,10 +101,10 @@ NavigationRun::NavigationRun(const SlamConfig& config, sim::World world,
       floor_radius_m_(config.navigation.planning.footprint.half_width_m),
       seed_(static_cast<std::uint32_t>(simulation.seed)) {
   CreateDirectory(options_.out);
-  const sim::SensorRig rig = sim::MakeRig(simulation.suite);
-  drive_ =
-      std::make_unique<SimulatedDrive>(std::move(world), simulation, config_,
-                                       MakeLocator(config_, options_, rig, T_map_world_), saved_);
+  const sim::LiveConfig started = Started(simulation, world, options_, T_map_world_);
+  drive_ = std::make_unique<SimulatedDrive>(std::move(world), started, config_,
+                                            MakeLocator(config_, options_, started, T_map_world_),
+                                            saved_);
   trial_log_ = std::make_unique<CsvLog>(options_.out + "/trials.csv", TrialHeader());
   collision_log_ = std::make_unique<CsvLog>(options_.out + "/collisions.csv",
                                             "stamp,trial,with,x,y,yaw,linear_mps,angular_rps");

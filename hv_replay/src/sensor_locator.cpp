@@ -22,9 +22,12 @@ struct MapLocalizer {
 
 class SensorLocator : public RobotLocator {
  public:
-  SensorLocator(const SlamConfig& config, const std::string& map, const sim::SensorRig& rig)
+  SensorLocator(const SlamConfig& config, const std::string& map, const sim::SensorRig& rig,
+                const std::optional<Pose>& T_map_base)
       : rig_(rig), pipeline_(config.system.odometry), predictor_(config.system.odometry.imu) {
-    if (!map.empty()) map_.emplace(config.localization, map);
+    if (map.empty()) return;
+    map_.emplace(config.localization, map);
+    if (T_map_base) map_->localizer.SetGuess({*T_map_base * rig_.T_base_imu});
   }
 
   void AddImu(const ImuSample& sample) override {
@@ -108,8 +111,9 @@ std::optional<RobotPlace> SensorLocator::At(Time stamp) const {
 }  // namespace
 
 std::unique_ptr<RobotLocator> LocateBySensors(const SlamConfig& config, const std::string& map,
-                                              const sim::SensorRig& rig) {
-  return std::make_unique<SensorLocator>(config, map, rig);
+                                              const sim::SensorRig& rig,
+                                              const std::optional<Pose>& T_map_base) {
+  return std::make_unique<SensorLocator>(config, map, rig, T_map_base);
 }
 
 }  // namespace hv::replay

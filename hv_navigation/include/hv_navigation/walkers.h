@@ -17,7 +17,7 @@ namespace hv::navigation {
 struct WalkConfig {
   double least_mps = 0.6;
   double most_mps = 1.3;
-  double any_way_mps = 0.9;
+  double any_way_mps = 1.2;
   double horizon_s = 1.5;
   double radius_m = 0.3;
 
@@ -47,6 +47,8 @@ class Walkers {
   /// The same for who may turn.
   bool MayReach(const Footprint& footprint, const PlanarPose& pose, Time then) const;
 
+  /// Whether one of them may be within `distance_m` of `place` then.
+  bool MayBeNear(const Eigen::Vector2d& place, double distance_m, Time then) const;
   /// Whether `walker` may be within `distance_m` of `place` then.
   static bool MayBeNear(const WalkConfig& config, const Walker& walker,
                         const Eigen::Vector2d& place, double distance_m, Time then);

@@ -51,9 +51,11 @@ class RobotLocator {
 };
 
 /// By odometry and, with a `map`, localisation in it, as the nodes do it; without one the map is
-/// the frame of odometry. Throws InputError when the map cannot be read.
+/// the frame of odometry. `T_map_base` is about where the robot is at first, as an operator tells
+/// it; without, it is looked for anywhere. Throws InputError when the map cannot be read.
 std::unique_ptr<RobotLocator> LocateBySensors(const SlamConfig& config, const std::string& map,
-                                              const sim::SensorRig& rig);
+                                              const sim::SensorRig& rig,
+                                              const std::optional<Pose>& T_map_base = std::nullopt);
 
 /// By the true states, which have to come with each IMU sample. Its frame of odometry is the world.
 std::unique_ptr<RobotLocator> LocateByTruth(const Pose& T_map_world, const sim::SensorRig& rig);
