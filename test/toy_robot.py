@@ -81,7 +81,8 @@ class ToyRobot:
         transform.child_frame_id = "base_link"
         transform.transform.translation.x, transform.transform.translation.y = self.position
         transform.transform.rotation.w = 1.0
-        self._transforms.publish(TFMessage([transform]))
+        if not rospy.is_shutdown():
+            self._transforms.publish(TFMessage([transform]))
 
     def _execute(self, goal):
         target = goal.target_pose.pose.position

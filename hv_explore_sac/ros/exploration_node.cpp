@@ -126,8 +126,11 @@ std::optional<Pose> ExplorationNode::PlaceOfRobot(Time now) const {
 void ExplorationNode::Act(const ExplorerOutput& output) {
   if (output.stop) navigation_.Cancel();
   if (output.goal) navigation_.Send(*output.goal);
-  server_.PublishFeedback(output, explorer_);
-  if (output.result) server_.Finish(*output.result);
+  if (output.result) {
+    server_.Finish(*output.result);
+  } else {
+    server_.PublishFeedback(output, explorer_);
+  }
 }
 
 void ExplorationNode::Report(const ExplorerOutput& output) {

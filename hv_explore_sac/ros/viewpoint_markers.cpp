@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hv_ros/conversions.h"
+#include "hv_ros/markers.h"
 #include "pose_message.h"
 
 namespace hv::explore {
@@ -15,30 +16,11 @@ using visualization_msgs::MarkerArray;
 constexpr double kText_m = 0.35;
 constexpr int kBright = 60;  ///< utility from which the colour no longer changes
 
-std_msgs::ColorRGBA Color(float r, float g, float b, float a = 1.0F) {
-  std_msgs::ColorRGBA color;
-  color.r = r;
-  color.g = g;
-  color.b = b;
-  color.a = a;
-  return color;
-}
-
 std_msgs::ColorRGBA ColorOf(int utility, bool visited) {
   if (visited) return Color(0.3F, 0.5F, 1.0F);
   if (utility == 0) return Color(0.5F, 0.5F, 0.5F, 0.6F);
   const float share = static_cast<float>(std::min(utility, kBright)) / kBright;
   return Color(1.0F - share, 0.5F + 0.5F * share, 0.1F);
-}
-
-Marker MakeMarker(const char* name, int type, double scale_m, const std_msgs::ColorRGBA& color) {
-  Marker marker;
-  marker.ns = name;
-  marker.type = type;
-  marker.pose.orientation.w = 1.0;
-  marker.scale.x = marker.scale.y = marker.scale.z = scale_m;
-  marker.color = color;
-  return marker;
 }
 
 /// Builds the markers of one decision.
