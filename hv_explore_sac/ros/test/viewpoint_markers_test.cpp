@@ -17,7 +17,7 @@ class ViewpointMarkersTest : public testing::Test {
   ViewpointMarkersTest()
       : chooser_(ExplorerConfig(), kRobotRadius_m, Bounds(),
                  [](const PlannerInputs& inputs) { return MakePlanner("utility", inputs); }) {
-    ros::Time::setNow(ros::Time(1.0));
+    ros::Time::init();
   }
 
   GoalChooser chooser_;
