@@ -25,7 +25,7 @@ constexpr bool kLatched = true;
 ExplorationNode::ExplorationNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : parameters_(ReadParameters(private_nh)),
       listener_(transforms_, nh),
-      explorer_(parameters_.config.explorer, parameters_.robot_radius_m),
+      explorer_(parameters_.config.explorer, parameters_.size),
       navigation_(nh, parameters_.config.node.map_frame),
       server_(private_nh, parameters_.config.node.map_frame, transforms_),
       starts_by_itself_(parameters_.config.node.autostart),

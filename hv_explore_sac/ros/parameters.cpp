@@ -7,7 +7,8 @@ namespace hv::explore {
 NodeParameters ReadParameters(const ros::NodeHandle& private_nh) {
   ExplorationNodeConfig config;
   PrivateParameters(private_nh).Read(config);
-  return {config.exploration, config.navigation.planning.footprint.InscribedRadius()};
+  const navigation::Footprint& footprint = config.navigation.planning.footprint;
+  return {config.exploration, {footprint.InscribedRadius(), footprint.CircumscribedRadius()}};
 }
 
 }  // namespace hv::explore

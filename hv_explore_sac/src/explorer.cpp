@@ -1,5 +1,6 @@
 #include "hv_explore_sac/explorer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -10,6 +11,7 @@ namespace hv::explore {
 namespace {
 
 constexpr double kNever_s = -1e9;
+constexpr int kMostPeriods = 5;  ///< of decisions that are waited for after a failure
 
 bool Completes(ExplorationEnd end) {
   return end == ExplorationEnd::kExplored || end == ExplorationEnd::kUnreachable;
@@ -119,9 +121,9 @@ struct Explorer::Run {
   int home_tries = 0;
 };
 
-Explorer::Explorer(const ExplorerConfig& config, double robot_radius_m,
+Explorer::Explorer(const ExplorerConfig& config, const RobotSize& size,
                    GoalChooser::PlannerMaker make_planner)
-    : config_(config), robot_radius_m_(robot_radius_m), make_planner_(std::move(make_planner)) {
+    : config_(config), size_(size), make_planner_(std::move(make_planner)) {
   if (make_planner_) return;
   make_planner_ = [name = config.choice.planner](const PlannerInputs& inputs) {
     return MakePlanner(name, inputs);
@@ -134,7 +136,7 @@ void Explorer::Start(const ExplorationTask& task) {
   const bool driving = run_ && run_->driving;
   run_ = std::make_unique<Run>(task, config_.goals.stuck_m);
   run_->driving = driving;
-  chooser_ = std::make_unique<GoalChooser>(config_, robot_radius_m_, task.bounds, make_planner_);
+  chooser_ = std::make_unique<GoalChooser>(config_, size_, task.bounds, make_planner_);
   progress_ = ExplorationProgress();
   goal_.reset();
   cancel_ = paused_ = false;
@@ -206,26 +208,28 @@ void Explorer::Explore(const ExplorerInput& input, ExplorerOutput& output) {
   const bool judged = JudgeGoal(input.T_map_base->position, output);
   if (!run_ || run_->end) return;
   const bool due = progress_.elapsed_s >= run_->decided_s + config_.choice.period_s;
-  if (judged || due) Decide(input, output);
+  // Another plan may begin with a turn, for which there must be room.
+  const bool on_the_way = goal_ && !chooser_->CanTurnAt(input.T_map_base->position);
+  if (judged || (due && !on_the_way)) Decide(input, output);
 }
 
-/// Whether the goal under way has ended, so that another one is to be chosen.
+/// Whether the robot has arrived, so that another goal is to be chosen at once.
 bool Explorer::JudgeGoal(const Eigen::Vector2d& robot, ExplorerOutput& output) {
   const std::optional<GoalOutcome> outcome = std::exchange(run_->outcome, std::nullopt);
   if (outcome) run_->driving = false;
   if (!goal_) return false;
   const double distance_m = (goal_->pose.position - robot).norm();
-  if (distance_m <= config_.goals.reached_m || (outcome && outcome->reached)) {
+  const bool near = distance_m <= config_.goals.reached_m && chooser_->CanTurnAt(robot);
+  if (near || (outcome && outcome->reached)) {
     Arrive();
     return true;
   }
   if (outcome) {
     Fail(outcome->reason, output);
-    return true;
+  } else if (run_->watch.StandsFor(progress_.elapsed_s) > config_.goals.stuck_s) {
+    Fail("the robot does not get on", output);
   }
-  if (run_->watch.StandsFor(progress_.elapsed_s) <= config_.goals.stuck_s) return false;
-  Fail("the robot does not get on", output);
-  return true;
+  return false;
 }
 
 void Explorer::Arrive() {
@@ -242,6 +246,9 @@ void Explorer::Fail(const std::string& reason, ExplorerOutput& output) {
   ++run_->failures;
   run_->failure = reason;
   chooser_->Refuse(*goal_);
+  // What is in the way of all goals may go by itself.
+  const double patience_s = config_.choice.period_s * std::min(run_->failures, kMostPeriods);
+  run_->decided_s = progress_.elapsed_s + patience_s - config_.choice.period_s;
   StopDriving(output);
   if (run_->failures < config_.goals.failures) return;
   Conclude(ExplorationEnd::kNavigationFails, reason, output);

@@ -14,10 +14,11 @@ constexpr double kForgottenShare = 0.7;
 
 }  // namespace
 
-GoalChooser::GoalChooser(const ExplorerConfig& config, double robot_radius_m, Bounds bounds,
+GoalChooser::GoalChooser(const ExplorerConfig& config, const RobotSize& size, Bounds bounds,
                          PlannerMaker make_planner)
     : config_(config),
-      rules_{robot_radius_m + config.places.margin_m, std::move(bounds)},
+      size_(size),
+      rules_{size.drive_m + config.places.margin_m, std::move(bounds)},
       make_planner_(std::move(make_planner)),
       guard_(GuardConfig()),
       refused_(GuardConfig()) {}
@@ -29,7 +30,7 @@ void GoalChooser::ForgetRefusals() { refused_ = RefusedGoals(config_.GuardInCell
 Outlook GoalChooser::Look(const OccupancyGrid& map, const Eigen::Vector2d& robot) {
   FollowMap(map);
   model_ = std::make_unique<ExplorationModel>(
-      ModelOf(map, frame_, rules_, config_.InCells(frame_.cell_m)));
+      ModelOf(*clearance_, frame_, rules_, config_.InCells(frame_.cell_m)));
   observation_ = Observation();
   const std::optional<Eigen::Vector2i> cell = CellOfRobot(robot);
   if (!cell) return Outlook::kNoFreePlace;
@@ -37,6 +38,7 @@ Outlook GoalChooser::Look(const OccupancyGrid& map, const Eigen::Vector2d& robot
   model_->Update(*cell);
   model_->Observe(observation_);
   const int refused = refused_.Apply(observation_, *model_);
+  AvoidNarrowPlaces();
   if (observation_.AnyUtility()) return Outlook::kGoals;
   if (refused > 0) return Outlook::kRefused;
   return AnyUnreachedUtility() ? Outlook::kUnreached : Outlook::kNothing;
@@ -45,6 +47,8 @@ Outlook GoalChooser::Look(const OccupancyGrid& map, const Eigen::Vector2d& robot
 /// Cells stay named as they are; only other ones than before make all that remembers them begin
 /// anew.
 void GoalChooser::FollowMap(const OccupancyGrid& map) {
+  const double margin_m = config_.places.margin_m + map.resolution_m;
+  clearance_.emplace(map, navigation::ClearanceGrid::Unknown::kFree, size_.turn_m + margin_m);
   free_m2_ = FreeArea(map, rules_.bounds);
   if (free_m2_ < kForgottenShare * most_free_m2_) {
     stood_.clear();
@@ -58,6 +62,20 @@ void GoalChooser::FollowMap(const OccupancyGrid& map) {
   refused_ = RefusedGoals(guard);
   planner_ = make_planner_(
       {config_.PlannerInCells(frame_.cell_m), config_.InCells(frame_.cell_m), nullptr, nullptr});
+}
+
+bool GoalChooser::CanTurnAt(const Eigen::Vector2d& position) const {
+  return !clearance_ || clearance_->ClearanceAt(position) >= size_.turn_m;
+}
+
+/// Where the robot cannot turn it may get stuck: such viewpoints are for when there are no others.
+void GoalChooser::AvoidNarrowPlaces() {
+  Observation roomy = observation_;
+  for (Observation::Node& node : roomy.nodes) {
+    const Eigen::Vector2d at = frame_.CenterOf(model_->graph().CellOf(node.viewpoint));
+    if (clearance_->ClearanceAt(at) < size_.turn_m + config_.places.margin_m) node.utility = 0;
+  }
+  if (roomy.AnyUtility()) observation_ = std::move(roomy);
 }
 
 /// While the robot is near where it last stood, it stands there.

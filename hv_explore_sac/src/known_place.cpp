@@ -4,8 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "hv_navigation/clearance_grid.h"
-
 namespace hv::explore {
 namespace {
 
@@ -25,16 +23,15 @@ Eigen::Vector2i ShiftOf(const OccupancyGrid& map, const CellFrame& frame) {
 
 }  // namespace
 
-ExplorationModel ModelOf(const OccupancyGrid& map, const CellFrame& frame, const PlaceRules& rules,
-                         const ExplorationConfig& config) {
+ExplorationModel ModelOf(const navigation::ClearanceGrid& clearance, const CellFrame& frame,
+                         const PlaceRules& rules, const ExplorationConfig& config) {
+  const OccupancyGrid& map = clearance.grid();
   const Eigen::Vector2i shift = ShiftOf(map, frame);
   // Blocks of frontiers keep their places too.
   const int block = config.frontier.block;
   const Eigen::Vector2i low(FloorTo(shift.x(), block), FloorTo(shift.y(), block));
   const Eigen::Vector2i size = shift - low + Eigen::Vector2i(map.width, map.height);
   ExplorationModel model(config, size.x(), size.y(), low);
-  const navigation::ClearanceGrid clearance(map, navigation::ClearanceGrid::Unknown::kFree,
-                                            rules.robot_radius_m + map.resolution_m);
   Belief& belief = model.belief();
   Belief ground = belief;
   for (int y = 0; y < map.height; ++y) {
@@ -43,7 +40,7 @@ ExplorationModel ModelOf(const OccupancyGrid& map, const CellFrame& frame, const
       const int index = belief.IndexOf(shift + cell);
       const bool outside = !rules.bounds.Contains(map.CenterOf(cell));
       const Cell known = outside ? Cell::kOccupied : KindOf(map.At(x, y));
-      const bool near = clearance.ClearanceAt(cell) < rules.robot_radius_m;
+      const bool near = clearance.ClearanceAt(cell) < rules.room_m;
       belief.Set(index, known);
       ground.Set(index, near ? Cell::kOccupied : known);
     }

@@ -17,7 +17,7 @@ class Exploration {
   explicit Exploration(const ExplorerConfig& config = {},
                        GoalChooser::PlannerMaker make_planner = nullptr,
                        const Eigen::Vector2d& start = {6.05, 1.25})
-      : robot(TwoRooms(), start), explorer(config, kRobotRadius_m, std::move(make_planner)) {}
+      : robot(TwoRooms(), start), explorer(config, kRobotSize, std::move(make_planner)) {}
 
   /// Half a second; navigation fails where `refuses` says so.
   ExplorerOutput Step() {

@@ -12,7 +12,7 @@ std::unique_ptr<Planner> Utility(const PlannerInputs& inputs) {
 }
 
 GoalChooser Chooser(const ExplorerConfig& config = {}, const Bounds& bounds = {}) {
-  return GoalChooser(config, kRobotRadius_m, bounds, Utility);
+  return GoalChooser(config, kRobotSize, bounds, Utility);
 }
 
 bool VisitedAt(const GoalChooser& chooser, const Eigen::Vector2d& position) {
@@ -144,6 +144,24 @@ TEST(GoalChooserTest, AMapThatWasForgottenIsExploredAnew) {
   ASSERT_TRUE(VisitedAt(chooser, {6.0, 1.2}));
   chooser.Look(first.known(), {1.0, 1.2});
   EXPECT_FALSE(VisitedAt(chooser, {6.0, 1.2}));
+}
+
+TEST(GoalChooserTest, PrefersViewpointsWhereTheRobotCanTurn) {
+  const ToyRobot robot(TwoRooms(), {6.0, 1.2});
+  GoalChooser roomy = Chooser();
+  ASSERT_EQ(roomy.Look(robot.known(), robot.pose().position), Outlook::kGoals);
+  for (const Observation::Node& node : roomy.observation().nodes) {
+    const Eigen::Vector2i& cell = roomy.model()->graph().CellOf(node.viewpoint);
+    if (node.utility > 0) {
+      EXPECT_TRUE(roomy.CanTurnAt(roomy.frame().CenterOf(cell)));
+    }
+  }
+  EXPECT_TRUE(roomy.CanTurnAt({6.0, 1.2}));
+  EXPECT_FALSE(roomy.CanTurnAt({6.0, 0.8}));
+  // One that can turn nowhere takes what there is.
+  const RobotSize large{kRobotRadius_m, 3.0};
+  GoalChooser narrow(ExplorerConfig(), large, Bounds(), Utility);
+  EXPECT_EQ(narrow.Look(robot.known(), robot.pose().position), Outlook::kGoals);
 }
 
 }  // namespace

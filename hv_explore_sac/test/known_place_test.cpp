@@ -9,12 +9,17 @@ namespace {
 
 const CellFrame kFrame{0.1, Eigen::Vector2d::Zero()};
 
+ExplorationModel Model(const OccupancyGrid& map, const CellFrame& frame, const PlaceRules& rules) {
+  const navigation::ClearanceGrid clearance(map, navigation::ClearanceGrid::Unknown::kFree, 1.0);
+  return ModelOf(clearance, frame, rules, ExplorationConfig());
+}
+
 TEST(KnownPlaceTest, KeepsTheRobotFromObstaclesAndTheOutside) {
   OccupancyGrid map = Drawn({"##########", "#........#", "#........#", "#........#", "##########"});
   map.At(20, 7) = OccupancyGrid::kUnknown;
   map.At(20, 12) = OccupancyGrid::kUnknown;
   const Bounds bounds({{0.0, 0.0}, {4.0, 0.0}, {4.0, 3.0}, {0.0, 3.0}});
-  const ExplorationModel model = ModelOf(map, kFrame, {0.28, bounds}, ExplorationConfig());
+  const ExplorationModel model = Model(map, kFrame, {0.28, bounds});
   const auto at = [&](double x, double y) { return model.ground().At(kFrame.CellOf({x, y})); };
   EXPECT_EQ(at(0.75, 1.25), Cell::kOccupied);  // 0.25 m from the wall
   EXPECT_EQ(at(0.85, 1.25), Cell::kFree);
@@ -31,9 +36,8 @@ TEST(KnownPlaceTest, CellsKeepTheirNamesWhenTheMapGrows) {
   OccupancyGrid large =
       Drawn({"..........", "..........", "..........", ".........."}, {-0.3, 1.7});
   const CellFrame frame{0.1, small.origin};
-  const ExplorationConfig config;
-  ExplorationModel before = ModelOf(small, frame, {}, config);
-  ExplorationModel after = ModelOf(large, frame, {}, config);
+  ExplorationModel before = Model(small, frame, {});
+  ExplorationModel after = Model(large, frame, {});
   before.Recall({}, 0.0);
   after.Recall({}, 0.0);
   EXPECT_EQ(before.belief().low(), Eigen::Vector2i(0, 0));
@@ -48,7 +52,7 @@ TEST(KnownPlaceTest, CellsKeepTheirNamesWhenTheMapGrows) {
 
 TEST(KnownPlaceTest, FindsTheNearestFreeCell) {
   const OccupancyGrid map = Drawn({"####", "#..#", "#..#", "####"});
-  const ExplorationModel model = ModelOf(map, kFrame, {0.28, {}}, ExplorationConfig());
+  const ExplorationModel model = Model(map, kFrame, {0.28, {}});
   EXPECT_EQ(NearestFree(model.ground(), kFrame, {0.55, 1.05}, 1.0), Eigen::Vector2i(8, 10));
   EXPECT_EQ(NearestFree(model.ground(), kFrame, {-3.0, 1.0}, 1.0), std::nullopt);
   EXPECT_EQ(NearestFree(model.ground(), kFrame, {1e300, 1.0}, 1.0), std::nullopt);

@@ -13,6 +13,7 @@
 namespace hv::explore {
 
 constexpr double kRobotRadius_m = 0.28;
+constexpr RobotSize kRobotSize{kRobotRadius_m, 0.4};
 
 /// A grid of 0.1 m from a drawing in tiles of 0.5 m: `#` is a wall, all else is free. The first row
 /// is the northernmost.

@@ -22,6 +22,10 @@ std::unique_ptr<RobotLocator> MakeLocator(const SlamConfig& config, const sim::S
   return by_truth ? LocateByTruth(Pose::Identity(), rig) : LocateBySensors(config, "", rig);
 }
 
+explore::RobotSize SizeOf(const navigation::Footprint& footprint) {
+  return {footprint.InscribedRadius(), footprint.CircumscribedRadius()};
+}
+
 std::optional<explore::GoalOutcome> OutcomeOf(const navigation::NavigationOutput& output) {
   if (!output.result || *output.result == navigation::NavigationResult::kCancelled) {
     return std::nullopt;
@@ -77,8 +81,7 @@ ExplorationDrive::ExplorationDrive(const SlamConfig& config, sim::World world,
       options_(options),
       shape_(simulation.robot.shape),
       world_(world),
-      explorer_(config.exploration.explorer,
-                config.navigation.planning.footprint.InscribedRadius()),
+      explorer_(config.exploration.explorer, SizeOf(config.navigation.planning.footprint)),
       coverage_log_(CreateDirectory(options.out) + "/coverage.csv",
                     "time_s,travelled_m,explored_m2,share,frontiers,goals,x,y"),
       goal_log_(options.out + "/goals.csv", "time_s,x,y,yaw,utility"),

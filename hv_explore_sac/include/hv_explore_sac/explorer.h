@@ -84,9 +84,8 @@ struct ExplorerOutput {
 /// Not thread-safe.
 class Explorer {
  public:
-  /// `robot_radius_m`: of the largest circle in the footprint. `make_planner`: instead of the
-  /// planner that the configuration names.
-  Explorer(const ExplorerConfig& config, double robot_radius_m,
+  /// `make_planner`: instead of the planner that the configuration names.
+  Explorer(const ExplorerConfig& config, const RobotSize& size,
            GoalChooser::PlannerMaker make_planner = nullptr);
   ~Explorer();
 
@@ -130,7 +129,7 @@ class Explorer {
   void Finish(ExplorationEnd end, const std::string& reason, ExplorerOutput& output);
 
   ExplorerConfig config_;
-  double robot_radius_m_;
+  RobotSize size_;
   GoalChooser::PlannerMaker make_planner_;
   std::unique_ptr<GoalChooser> chooser_;
   std::unique_ptr<Run> run_;

@@ -30,15 +30,15 @@ enum class Outlook {
   kNoFreePlace  ///< the robot does not stand near free ground
 };
 
-/// Chooses viewpoints in a map that may grow and shift between the calls: the model is made anew
-/// from each map, and where the robot has stood, what was refused and what the planner remembers
-/// stay. The same calls give the same choices. Not thread-safe.
+/// Chooses viewpoints where the robot can turn, if there are any, in a map that may grow and shift
+/// between the calls: the model is made anew from each map, and where the robot has stood, what was
+/// refused and what the planner remembers stay. The same calls give the same choices. Not
+/// thread-safe.
 class GoalChooser {
  public:
   using PlannerMaker = std::function<std::unique_ptr<Planner>(const PlannerInputs&)>;
 
-  /// `robot_radius_m`: of the largest circle in the footprint.
-  GoalChooser(const ExplorerConfig& config, double robot_radius_m, Bounds bounds,
+  GoalChooser(const ExplorerConfig& config, const RobotSize& size, Bounds bounds,
               PlannerMaker make_planner);
 
   /// The robot stood at a place [m], from where it has seen what there is.
@@ -50,6 +50,9 @@ class GoalChooser {
 
   /// Takes a map and where the robot is in it; what follows is about that.
   Outlook Look(const OccupancyGrid& map, const Eigen::Vector2d& robot);
+
+  /// Whether the robot can turn at a place, as far as the last map tells.
+  bool CanTurnAt(const Eigen::Vector2d& position) const;
 
   /// Whether a goal can be reached and still observes what it was chosen for.
   bool IsWorth(const ViewpointGoal& goal) const;
@@ -70,6 +73,7 @@ class GoalChooser {
 
  private:
   void FollowMap(const OccupancyGrid& map);
+  void AvoidNarrowPlaces();
   std::optional<Eigen::Vector2i> CellOfRobot(const Eigen::Vector2d& robot) const;
   std::vector<Eigen::Vector2i> StoodCells() const;
   int NodeOf(const ViewpointGoal& goal) const;
@@ -77,6 +81,7 @@ class GoalChooser {
   ViewpointGoal GoalAt(int node) const;
 
   ExplorerConfig config_;
+  RobotSize size_;
   PlaceRules rules_;
   PlannerMaker make_planner_;
   CellFrame frame_;
@@ -84,6 +89,7 @@ class GoalChooser {
   LoopGuard guard_;
   RefusedGoals refused_;
   std::vector<Eigen::Vector2d> stood_;  ///< oldest first [m]
+  std::optional<navigation::ClearanceGrid> clearance_;
   std::unique_ptr<ExplorationModel> model_;
   Observation observation_;
   double free_m2_ = 0.0;

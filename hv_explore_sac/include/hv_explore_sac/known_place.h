@@ -7,6 +7,7 @@
 #include "hv_core/occupancy_grid.h"
 #include "hv_explore_sac/bounds.h"
 #include "hv_explore_sac/exploration_model.h"
+#include "hv_navigation/clearance_grid.h"
 
 namespace hv::explore {
 
@@ -26,17 +27,23 @@ struct CellFrame {
   }
 };
 
-/// What a map means to a robot of some size.
+/// The room that a robot needs.
+struct RobotSize {
+  double drive_m = 0.0;  ///< to obstacles on its way: the largest circle in its footprint
+  double turn_m = 0.0;   ///< where it turns: the smallest circle around its footprint
+};
+
+/// What a map means to a robot.
 struct PlaceRules {
-  double robot_radius_m = 0.0;  ///< nearer to obstacles than that is closed
-  Bounds bounds;                ///< what lies outside is closed
+  double room_m = 0.0;  ///< nearer to obstacles than that is closed
+  Bounds bounds;        ///< what lies outside is closed
 };
 
 /// The model of a map, with its beliefs filled in and nothing else: what is known, and the ground
 /// where the robot may stand. Cells are those of `frame`, which the map's must match but for a
 /// shift.
-ExplorationModel ModelOf(const OccupancyGrid& map, const CellFrame& frame, const PlaceRules& rules,
-                         const ExplorationConfig& config);
+ExplorationModel ModelOf(const navigation::ClearanceGrid& map, const CellFrame& frame,
+                         const PlaceRules& rules, const ExplorationConfig& config);
 
 /// The free cell nearest to a position, at most `reach_m` away.
 std::optional<Eigen::Vector2i> NearestFree(const Belief& belief, const CellFrame& frame,

@@ -15,7 +15,7 @@ using visualization_msgs::Marker;
 class ViewpointMarkersTest : public testing::Test {
  protected:
   ViewpointMarkersTest()
-      : chooser_(ExplorerConfig(), kRobotRadius_m, Bounds(),
+      : chooser_(ExplorerConfig(), kRobotSize, Bounds(),
                  [](const PlannerInputs& inputs) { return MakePlanner("utility", inputs); }) {
     ros::Time::init();
   }
