@@ -91,7 +91,7 @@ class ExplorationAction(unittest.TestCase):
         states = [state for state, _ in itertools.groupby(m.state for m in self.feedback)]
         self.assertEqual(states[-2:], ["exploring", "returning"])
         self.assertLessEqual(set(states[:-2]), {"waiting"})
-        explored = [message.explored_m2 for message in self.feedback if message.state == "exploring"]
+        explored = [m.explored_m2 for m in self.feedback if m.state == "exploring"]
         self.assertEqual(explored, sorted(explored))
         goals = [message.goal for message in self.feedback if message.goal.header.frame_id]
         self.assertGreater(len(goals), 3)

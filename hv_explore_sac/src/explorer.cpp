@@ -1,8 +1,6 @@
 #include "hv_explore_sac/explorer.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "progress_watch.h"
@@ -12,16 +10,6 @@ namespace {
 
 constexpr double kNever_s = -1e9;
 constexpr int kMostPeriods = 5;  ///< of decisions that are waited for after a failure
-
-bool Completes(ExplorationEnd end) {
-  return end == ExplorationEnd::kExplored || end == ExplorationEnd::kUnreachable;
-}
-
-/// Ends after which the robot can still drive.
-bool AllowsReturn(ExplorationEnd end) {
-  return Completes(end) || end == ExplorationEnd::kOutOfTime ||
-         end == ExplorationEnd::kNavigationFails;
-}
 
 ExplorationEnd EndOf(Outlook outlook) {
   switch (outlook) {
@@ -55,32 +43,6 @@ class Spell {
 };
 
 }  // namespace
-
-std::string ProblemOf(const ExplorationTask& task) {
-  const bool budget_valid = std::isfinite(task.time_budget_s) && task.time_budget_s >= 0.0;
-  if (!budget_valid) return "the time budget is not a number of seconds";
-  return task.bounds.Problem();
-}
-
-const char* ToString(ExplorationEnd end) {
-  switch (end) {
-    case ExplorationEnd::kExplored:
-      return "explored: no frontiers are left";
-    case ExplorationEnd::kUnreachable:
-      return "nothing is left that can be reached";
-    case ExplorationEnd::kOutOfTime:
-      return "out of time";
-    case ExplorationEnd::kCancelled:
-      return "cancelled";
-    case ExplorationEnd::kNavigationFails:
-      return "navigation fails";
-    case ExplorationEnd::kNoFreePlace:
-      return "the robot does not stand on free ground inside of the bounds";
-    case ExplorationEnd::kInputsLost:
-      return "inputs lost";
-  }
-  return "";
-}
 
 const char* ToString(ExplorerState state) {
   switch (state) {

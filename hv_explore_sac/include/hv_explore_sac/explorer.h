@@ -6,54 +6,14 @@
 
 #include "hv_core/occupancy_grid.h"
 #include "hv_core/time.h"
+#include "hv_explore_sac/exploration_task.h"
 #include "hv_explore_sac/goal_chooser.h"
 
 namespace hv::explore {
 
-/// What is to be explored.
-struct ExplorationTask {
-  Bounds bounds;
-  double time_budget_s = 0.0;  ///< without pauses; 0: as long as it takes
-  bool return_home = false;    ///< to where it began, in the end
-};
-
-/// What is wrong with a task in one line; empty when nothing is.
-std::string ProblemOf(const ExplorationTask& task);
-
-/// How an exploration ends.
-enum class ExplorationEnd {
-  kExplored,     ///< no frontiers are left
-  kUnreachable,  ///< none that can be reached
-  kOutOfTime,
-  kCancelled,
-  kNavigationFails,  ///< too many goals in a row
-  kNoFreePlace,      ///< the robot stands in an obstacle, or outside of the bounds
-  kInputsLost        ///< no map, or no place in it
-};
-
 enum class ExplorerState { kIdle, kWaiting, kExploring, kReturning, kPaused };
 
-const char* ToString(ExplorationEnd end);
 const char* ToString(ExplorerState state);
-
-/// How far an exploration has come.
-struct ExplorationProgress {
-  double explored_m2 = 0.0;  ///< known to be free, inside of the bounds
-  int frontiers = 0;         ///< frontier points left
-  double travelled_m = 0.0;
-  double elapsed_s = 0.0;  ///< without pauses
-  int decisions = 0;
-  int goals = 0;  ///< sent
-  int failed_goals = 0;
-  int loops = 0;  ///< broken off
-};
-
-struct ExplorationResult {
-  ExplorationEnd end = ExplorationEnd::kExplored;
-  std::string reason;    ///< one line
-  bool success = false;  ///< all that can be reached has been explored, and home was if asked for
-  ExplorationProgress progress;
-};
 
 /// How a goal given to the navigation has ended.
 struct GoalOutcome {
