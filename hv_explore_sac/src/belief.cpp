@@ -14,9 +14,10 @@ Cell FromGrid(std::int8_t value) {
 
 }  // namespace
 
-Belief::Belief(int width, int height)
+Belief::Belief(int width, int height, const Eigen::Vector2i& low)
     : width_(width),
       height_(height),
+      low_(low),
       cells_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), Cell::kUnknown) {}
 
 void Belief::Assign(const OccupancyGrid& grid) {
@@ -30,7 +31,7 @@ void Belief::Assign(const OccupancyGrid& grid) {
 int Belief::FirstBlocked(const Eigen::Vector2i& from, const Eigen::Vector2i& to) const {
   int blocked = kNone;
   WalkLine(from, to, [&](int x, int y) {
-    const int index = y * width_ + x;
+    const int index = IndexOf({x, y});
     if (At(index) == Cell::kFree) return true;
     blocked = index;
     return false;

@@ -1,23 +1,50 @@
 #include "hv_explore_sac/exploration_model.h"
 
+#include <algorithm>
+
+#include "bridges.h"
+
 namespace hv::explore {
 
-ExplorationModel::ExplorationModel(const ExplorationConfig& config, int width, int height)
+ExplorationModel::ExplorationModel(const ExplorationConfig& config, int width, int height,
+                                   const Eigen::Vector2i& low)
     : config_(config),
-      belief_(width, height),
+      belief_(width, height, low),
       frontiers_(config.frontier, belief_),
       graph_(config.viewpoint, belief_),
       views_(config.viewpoint) {}
 
 void ExplorationModel::Update(const Eigen::Vector2i& cell) {
-  frontiers_.Update(belief_);
-  graph_.Update(belief_);
-  robot_ = graph_.Add(cell, belief_);
+  TakeChanges();
+  robot_ = graph_.Add(cell, ground());
   graph_.MarkVisited(robot_);
+  if (ground_) BridgeGaps(graph_, *ground_, robot_, config_.viewpoint.spacing_x);
   views_.Update(belief_, frontiers_, graph_);
-  belief_.ClearChanges();
   ways_.Run(graph_, robot_);
   Remember(cell);
+}
+
+void ExplorationModel::TakeChanges() {
+  frontiers_.Update(belief_);
+  graph_.Update(ground());
+  belief_.ClearChanges();
+  if (ground_) ground_->ClearChanges();
+}
+
+void ExplorationModel::Recall(const std::vector<Eigen::Vector2i>& stood, double radius) {
+  TakeChanges();
+  for (const Eigen::Vector2i& cell : stood) {
+    if (!ground().Contains(cell) || ground().At(cell) != Cell::kFree) continue;
+    graph_.Add(cell, ground());
+    Remember(cell);
+  }
+  for (int viewpoint = 0; viewpoint < graph_.size(); ++viewpoint) {
+    const Eigen::Vector2i& at = graph_.CellOf(viewpoint);
+    const bool visited = std::any_of(stood.begin(), stood.end(), [&](const Eigen::Vector2i& cell) {
+      return (cell - at).cast<double>().norm() <= radius;
+    });
+    if (visited) graph_.MarkVisited(viewpoint);
+  }
 }
 
 int ExplorationModel::UtilityOf(int viewpoint) const {

@@ -24,6 +24,7 @@ void Frontiers::AroundBlock(int block, Visit visit) const {
 Frontiers::Frontiers(const FrontierConfig& config, const Belief& belief)
     : config_(config),
       block_(config.block),
+      low_(belief.low()),
       columns_(BlocksFor(belief.width(), block_)),
       rows_(BlocksFor(belief.height(), block_)) {
   const auto blocks = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
@@ -68,7 +69,7 @@ Frontiers::Block Frontiers::KindOf(std::size_t block) const {
 }
 
 int Frontiers::BlockOf(const Belief& belief, int cell) const {
-  const Eigen::Vector2i place = belief.CellOf(cell) / block_;
+  const Eigen::Vector2i place = (belief.CellOf(cell) - low_) / block_;
   return place.y() * columns_ + place.x();
 }
 

@@ -5,9 +5,23 @@
 #include <utility>
 
 namespace hv::explore {
+namespace {
+
+/// The multiples of a spacing in [low, end), rounded.
+std::vector<int> Samples(int low, int end, double spacing) {
+  std::vector<int> samples;
+  for (int i = static_cast<int>(std::floor(low / spacing));; ++i) {
+    const int at = static_cast<int>(std::lround(i * spacing));
+    if (at >= end) return samples;
+    if (at >= low) samples.push_back(at);
+  }
+}
+
+}  // namespace
 
 ViewpointGraph::ViewpointGraph(const ViewpointConfig& config, const Belief& belief)
     : config_(config),
+      low_(belief.low()),
       width_(belief.width()),
       on_lattice_(Index(belief.width() * belief.height()), 0),
       viewpoint_at_(on_lattice_.size(), -1) {
@@ -38,17 +52,14 @@ int ViewpointGraph::Add(const Eigen::Vector2i& cell, const Belief& belief) {
 }
 
 int ViewpointGraph::At(const Eigen::Vector2i& cell) const {
-  return viewpoint_at_[Index(cell.y() * width_ + cell.x())];
+  return viewpoint_at_[Index((cell.y() - low_.y()) * width_ + cell.x() - low_.x())];
 }
 
 void ViewpointGraph::PlaceLattice(const Belief& belief) {
-  for (int row = 0;; ++row) {
-    const long y = std::lround(row * config_.spacing_y);
-    if (y >= belief.height()) return;
-    for (int column = 0;; ++column) {
-      const long x = std::lround(column * config_.spacing_x);
-      if (x >= belief.width()) break;
-      on_lattice_[Index(static_cast<int>(y) * width_ + static_cast<int>(x))] = 1;
+  const Eigen::Vector2i end = low_ + Eigen::Vector2i(belief.width(), belief.height());
+  for (const int y : Samples(low_.y(), end.y(), config_.spacing_y)) {
+    for (const int x : Samples(low_.x(), end.x(), config_.spacing_x)) {
+      on_lattice_[Index(belief.IndexOf({x, y}))] = 1;
     }
   }
 }

@@ -75,5 +75,19 @@ TEST(BeliefTest, LinesEndAtTheFirstCellThatIsNotFree) {
   EXPECT_EQ(belief.FirstBlocked({0, 0}, {5, 0}), Belief::kNone);
 }
 
+TEST(BeliefTest, NamesCellsFromItsLowestOn) {
+  const Eigen::Vector2i low(-3, 2);
+  Belief belief(4, 5, low);
+  EXPECT_EQ(belief.IndexOf(low), 0);
+  for (int index = 0; index < 20; ++index) {
+    EXPECT_EQ(belief.IndexOf(belief.CellOf(index)), index);
+    EXPECT_TRUE(belief.Contains(belief.CellOf(index)));
+  }
+  EXPECT_FALSE(belief.Contains({-4, 3}));
+  EXPECT_FALSE(belief.Contains({1, 3}));
+  EXPECT_TRUE(belief.Contains({0, 6}));
+  EXPECT_FALSE(belief.Contains({0, 7}));
+}
+
 }  // namespace
 }  // namespace hv::explore

@@ -177,5 +177,76 @@ TEST(ObservationTest, RemembersTheLastViewpoints) {
   EXPECT_EQ(observation.history.back(), Observation::kRobot);
 }
 
+/// Two rooms with a door of `door` cells between them, and a robot that takes up `margin` cells to
+/// every side.
+ExplorationModel TwoRoomsWithADoor(int door, int margin) {
+  constexpr int kWidth = 60;
+  constexpr int kHeight = 40;
+  ExplorationConfig config;
+  config.viewpoint.spacing_x = config.viewpoint.spacing_y = 8.0;
+  ExplorationModel model(config, kWidth, kHeight);
+  Belief ground = model.belief();
+  const auto is_wall = [door](int x, int y) {
+    if (x < 0 || y < 0 || x >= kWidth || y >= kHeight) return true;
+    const bool in_door = y >= 19 && y < 19 + door;
+    return x >= 29 && x < 32 && !in_door;
+  };
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      bool near = false;
+      for (int i = -margin; i <= margin; ++i) near |= is_wall(x + i, y) || is_wall(x, y + i);
+      const int index = ground.IndexOf({x, y});
+      model.belief().Set(index, is_wall(x, y) ? Cell::kOccupied : Cell::kFree);
+      ground.Set(index, near ? Cell::kOccupied : Cell::kFree);
+    }
+  }
+  model.SetGround(std::move(ground));
+  model.Update({10, 10});
+  return model;
+}
+
+bool ReachesTheOtherRoom(const ExplorationModel& model) {
+  const std::vector<int>& reached = model.ways().order();
+  return std::any_of(reached.begin(), reached.end(),
+                     [&model](int viewpoint) { return model.graph().CellOf(viewpoint).x() > 35; });
+}
+
+TEST(GroundTest, ViewpointsAndEdgesLieWhereTheRobotMayStand) {
+  const ExplorationModel model = TwoRoomsWithADoor(7, 3);
+  for (int viewpoint = 0; viewpoint < model.graph().size(); ++viewpoint) {
+    const Eigen::Vector2i& cell = model.graph().CellOf(viewpoint);
+    EXPECT_EQ(model.ground().At(cell), Cell::kFree);
+    for (const ViewpointGraph::Edge& edge : model.graph().EdgesOf(viewpoint)) {
+      const Eigen::Vector2i& to = model.graph().CellOf(edge.to);
+      const bool free = model.ground().FirstBlocked(cell, to) == Belief::kNone ||
+                        model.ground().FirstBlocked(to, cell) == Belief::kNone;
+      EXPECT_TRUE(free);
+    }
+  }
+}
+
+TEST(GroundTest, NarrowDoorsAreBridged) {
+  EXPECT_TRUE(ReachesTheOtherRoom(TwoRoomsWithADoor(7, 3)));   // a row of cells is left
+  EXPECT_FALSE(ReachesTheOtherRoom(TwoRoomsWithADoor(6, 3)));  // none is
+}
+
+TEST(RecallTest, BringsBackWhereTheRobotStood) {
+  ExplorationModel model(ExplorationConfig(), 200, 200, {-50, -100});
+  for (int cell = 0; cell < 200 * 200; ++cell) model.belief().Set(cell, Cell::kFree);
+  model.belief().Set(model.belief().IndexOf({7, 7}), Cell::kOccupied);
+  model.Recall({{7, 7}, {-30, -90}, {3, 5}, {1000, 3}}, 6.0);
+  model.Update({20, 20});
+  const ViewpointGraph& graph = model.graph();
+  EXPECT_LT(graph.At({7, 7}), 0);
+  EXPECT_TRUE(graph.Visited(graph.At({-30, -90})));
+  EXPECT_TRUE(graph.Visited(graph.At({0, 0})));  // of the lattice, 5.8 cells from where it stood
+  EXPECT_FALSE(graph.Visited(graph.At({22, 0})));
+  Observation observation;
+  model.Observe(observation);
+  ASSERT_EQ(observation.history.size(), 3U);
+  EXPECT_EQ(graph.CellOf(observation.node(observation.history[1]).viewpoint),
+            Eigen::Vector2i(3, 5));
+}
+
 }  // namespace
 }  // namespace hv::explore

@@ -54,6 +54,7 @@ void SystemConfig::Describe(ConfigVisitor& visitor) {
   visitor.Foreign("mapping");
   visitor.Foreign("localization");
   visitor.Foreign("navigation");
+  visitor.Foreign("exploration");
 }
 
 void SystemConfig::Validate(ConfigProblems& problems) const {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hv_ros/conversions.h"
+#include "hv_ros/markers.h"
 
 namespace hv::loop {
 namespace {
@@ -16,25 +17,6 @@ using visualization_msgs::MarkerArray;
 
 constexpr std::size_t kMaxScores = 100;
 constexpr double kTextHeight = 0.4;  // [m]
-
-std_msgs::ColorRGBA Color(float r, float g, float b, float a = 1.0F) {
-  std_msgs::ColorRGBA color;
-  color.r = r;
-  color.g = g;
-  color.b = b;
-  color.a = a;
-  return color;
-}
-
-Marker MakeMarker(const char* name, int type, double scale, const std_msgs::ColorRGBA& color) {
-  Marker marker;
-  marker.ns = name;
-  marker.type = type;
-  marker.pose.orientation.w = 1.0;
-  marker.scale.x = marker.scale.y = marker.scale.z = scale;
-  marker.color = color;
-  return marker;
-}
 
 /// Builds the markers of one view.
 class MarkerBuilder {

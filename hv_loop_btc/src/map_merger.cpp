@@ -60,8 +60,8 @@ std::vector<GraphVertex> Placed(const PoseGraphData& graph) {
 }  // namespace
 
 void MapMergerConfig::Describe(ConfigVisitor& visitor) {
-  for (const char* other :
-       {"input", "points", "odometry", "output", "mapping", "localization", "navigation"}) {
+  for (const char* other : {"input", "points", "odometry", "output", "mapping", "localization",
+                            "navigation", "exploration"}) {
     visitor.Foreign(other);
   }
   visitor.Section("loop", loop, "loop closing");

@@ -34,7 +34,7 @@ void MappingConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("map", map, "what is made of the keyframes when a map is saved");
   visitor.Section("mapping", mapping, "what the loop closing node publishes");
   for (const char* section :
-       {"input", "points", "odometry", "output", "localization", "navigation"}) {
+       {"input", "points", "odometry", "output", "localization", "navigation", "exploration"}) {
     visitor.Foreign(section);
   }
 }

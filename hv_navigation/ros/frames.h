@@ -8,18 +8,9 @@
 
 #include "hv_core/se3.h"
 #include "hv_core/time.h"
+#include "hv_ros/newest_transform.h"
 
 namespace hv::navigation {
-
-struct StampedTransform {
-  Pose T_parent_child = Pose::Identity();
-  Time stamp;  ///< 1970 for transforms that always hold
-};
-
-/// The newest transform that tf has, without waiting. Nullopt when it has none.
-std::optional<StampedTransform> NewestTransform(const tf2_ros::Buffer& buffer,
-                                                const std::string& parent,
-                                                const std::string& child);
 
 /// Where odometry lies in the map. A localiser that has lost the place stops telling it, and with
 /// it the place is lost here. `newest`: stamp of the newest odometry, of which a transform may be

@@ -1,32 +1,15 @@
-#include <csignal>
-#include <ctime>
 #include <iostream>
 
 #include <ros/ros.h>
 
 #include "hv_core/error.h"
 #include "hv_core/memory.h"
+#include "hv_ros/interrupt.h"
 #include "navigation_node.h"
-
-namespace {
-
-/// Returns after an interrupt, or when ROS has ended. Unlike the handler of ROS it leaves topics
-/// open, so that the robot can be stopped.
-void WaitForEnd(const sigset_t& signals) {
-  const timespec patience{0, 100'000'000};
-  while (ros::ok() && sigtimedwait(&signals, nullptr, &patience) < 0) {
-  }
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   hv::KeepFreedMemory();
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  const hv::Interrupt interrupt;
   ros::init(argc, argv, "hv_navigation", ros::init_options::NoSigintHandler);
   try {
     // The connections outlive the node, so that its last velocity is delivered.
@@ -35,7 +18,7 @@ int main(int argc, char** argv) {
     {
       const hv::navigation::NavigationNode node(ros::NodeHandle(), ros::NodeHandle("~"));
       spinner.start();
-      WaitForEnd(signals);
+      interrupt.Wait();
     }
     ros::WallDuration(0.1).sleep();
   } catch (const hv::InputError& error) {

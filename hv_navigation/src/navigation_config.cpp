@@ -37,8 +37,8 @@ void NavigationConfig::Validate(ConfigProblems& problems) const {
 
 void NavigationNodeConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("navigation", navigation, "obstacles and ways");
-  for (const char* section :
-       {"input", "points", "odometry", "output", "loop", "map", "mapping", "localization"}) {
+  for (const char* section : {"input", "points", "odometry", "output", "loop", "map", "mapping",
+                              "localization", "exploration"}) {
     visitor.Foreign(section);
   }
 }

@@ -100,8 +100,8 @@ void LocalizerConfig::Validate(ConfigProblems& problems) const {
 
 void LocalizationNodeConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("localization", localization, "localisation in a saved map");
-  for (const char* section :
-       {"input", "points", "odometry", "output", "loop", "map", "mapping", "navigation"}) {
+  for (const char* section : {"input", "points", "odometry", "output", "loop", "map", "mapping",
+                              "navigation", "exploration"}) {
     visitor.Foreign(section);
   }
 }

@@ -9,6 +9,7 @@
 #include "hv_core/map_folder.h"
 #include "hv_replay/console.h"
 #include "hv_replay/drive_picture.h"
+#include "hv_replay/drive_start.h"
 #include "hv_replay/mapped_start.h"
 #include "hv_replay/result_files.h"
 #include "hv_replay/trajectory_error.h"
@@ -16,19 +17,11 @@
 namespace hv::replay {
 namespace {
 
-constexpr double kFindPlace_s = 30.0;
 constexpr double kArrived_m = 0.5;
-constexpr double kMoving_mps = 0.02;
-constexpr double kMoving_rps = 0.05;
 constexpr int kTriesPerBox = 3;
 
 /// No drive takes longer, whatever the navigator says.
 double LongestDrive_s(double optimal_m) { return 180.0 + 6.0 * optimal_m; }
-
-bool Moves(const navigation::Velocity& velocity) {
-  return std::abs(velocity.linear_mps) > kMoving_mps ||
-         std::abs(velocity.angular_rps) > kMoving_rps;
-}
 
 Pose TruthInMap(const NavigationRunOptions& options) {
   if (options.map.empty()) return Pose::Identity();
@@ -68,27 +61,6 @@ std::unique_ptr<RobotLocator> MakeLocator(const SlamConfig& config,
   return LocateBySensors(config, options.map, rig, T_map_world * told);
 }
 
-const char* NameOf(sim::ContactKind kind) {
-  switch (kind) {
-    case sim::ContactKind::kObstacle:
-      return "obstacle";
-    case sim::ContactKind::kPerson:
-      return "person";
-    case sim::ContactKind::kEdge:
-      return "edge";
-  }
-  return "";
-}
-
-std::string CollisionRow(const sim::Collision& collision, const navigation::PlanarPose& place,
-                         const NavigationTrial& trial) {
-  char text[128];
-  std::snprintf(text, sizeof(text), ",%d,%s,%.3f,%.3f,%.4f,%.3f,%.3f", trial.number,
-                NameOf(collision.contact.kind), place.position.x(), place.position.y(), place.yaw,
-                collision.contact.velocity.linear_mps, collision.contact.velocity.angular_rps);
-  return ToString(collision.stamp) + text;
-}
-
 }  // namespace
 
 NavigationRun::NavigationRun(const SlamConfig& config, sim::World world,
@@ -106,8 +78,7 @@ NavigationRun::NavigationRun(const SlamConfig& config, sim::World world,
                                             MakeLocator(config_, options_, started, T_map_world_),
                                             saved_);
   trial_log_ = std::make_unique<CsvLog>(options_.out + "/trials.csv", TrialHeader());
-  collision_log_ = std::make_unique<CsvLog>(options_.out + "/collisions.csv",
-                                            "stamp,trial,with,x,y,yaw,linear_mps,angular_rps");
+  collision_log_ = std::make_unique<CollisionLog>(options_.out + "/collisions.csv");
   cycle_log_ = std::make_unique<CsvLog>(
       options_.out + "/cycles.csv",
       "stamp,trial,state,x,y,yaw,true_x,true_y,true_yaw,linear_mps,angular_rps,command_linear,"
@@ -117,7 +88,7 @@ NavigationRun::NavigationRun(const SlamConfig& config, sim::World world,
 
 std::vector<NavigationTrial> NavigationRun::Run() {
   WriteText(options_.out + "/config.yaml", ToYaml(config_));
-  WaitForPlace();
+  FindPlace();
   std::vector<NavigationTrial> trials;
   ProgressLine progress(title_);
   const bool boxes = options_.scenario != NavigationScenario::kRandom;
@@ -140,15 +111,9 @@ std::vector<NavigationTrial> NavigationRun::Run() {
   return trials;
 }
 
-/// The robot stands until odometry has started and its place in the map is found.
-void NavigationRun::WaitForPlace() {
-  do {
-    last_ = drive_->Cycle();
-    if (drive_->time_s() > kFindPlace_s) throw InputError("the robot does not find its place");
-  } while (!last_.place || !last_.place->localized || !drive_->view().map);
-  if (!options_.map.empty()) return;
-  const Pose T_map_base = last_.place->T_map_odom * last_.place->T_odom_base;
-  T_map_world_ = T_map_base * last_.T_world_base.inverse();
+void NavigationRun::FindPlace() {
+  last_ = WaitForPlace(*drive_);
+  if (options_.map.empty()) T_map_world_ = WorldInMap(last_);
 }
 
 /// Without a saved map, goals lie in what has been seen by now.
@@ -220,17 +185,11 @@ void NavigationRun::Note(const DriveCycle& cycle, NavigationTrial& trial) {
 }
 
 void NavigationRun::NoteCollisions(const DriveCycle& cycle, NavigationTrial& trial) const {
-  for (const sim::Collision& collision : cycle.collisions) {
-    const sim::DriveCommand& velocity = collision.contact.velocity;
-    const bool moved = Moves({velocity.linear_mps, velocity.angular_rps});
-    collision_log_->Append(CollisionRow(collision, InMap(collision.contact.T_world_base), trial));
-    if (!moved && collision.contact.kind == sim::ContactKind::kPerson) {
-      ++trial.hit_by_people;
-      continue;
-    }
-    ++trial.collisions;
-    trial.contacts.push_back(InMap(collision.contact.T_world_base).position);
-  }
+  CollisionCount count;
+  collision_log_->Note(cycle, T_map_world_, trial.number, count);
+  trial.collisions += count.collisions;
+  trial.hit_by_people += count.hit_by_people;
+  trial.contacts.insert(trial.contacts.end(), count.contacts.begin(), count.contacts.end());
 }
 
 DriveSituation NavigationRun::SituationAt(const DriveCycle& cycle) const {

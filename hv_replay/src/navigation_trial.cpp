@@ -38,6 +38,13 @@ std::vector<double> All(const std::vector<NavigationTrial>& trials, Times times)
   return all;
 }
 
+std::string Quoted(std::string text) {
+  std::replace(text.begin(), text.end(), '"', '\'');
+  return '"' + text + '"';
+}
+
+}  // namespace
+
 JsonObject TimesJson(const std::vector<double>& milliseconds) {
   JsonObject json;
   json.AddCount("count", milliseconds.size())
@@ -47,13 +54,6 @@ JsonObject TimesJson(const std::vector<double>& milliseconds) {
       .AddCount("above_100_ms", Late(milliseconds));
   return json;
 }
-
-std::string Quoted(std::string text) {
-  std::replace(text.begin(), text.end(), '"', '\'');
-  return '"' + text + '"';
-}
-
-}  // namespace
 
 std::string TrialHeader() {
   return "trial,start_x,start_y,start_yaw,goal_x,goal_y,goal_yaw,reached,end_distance_m,"

@@ -9,6 +9,7 @@ void SlamConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("mapping", mapping, "what the loop closing node publishes");
   visitor.Section("localization", localization, "localisation in a saved map");
   visitor.Section("navigation", navigation, "obstacles and ways");
+  visitor.Section("exploration", exploration, "exploration of unknown places");
 }
 
 void SlamConfig::Validate(ConfigProblems& problems) const {
@@ -18,6 +19,7 @@ void SlamConfig::Validate(ConfigProblems& problems) const {
   mapping.Validate(problems);
   localization.Validate(problems);
   navigation.Validate(problems);
+  exploration.Validate(problems);
 }
 
 }  // namespace hv::replay

@@ -4,50 +4,21 @@
 #include <vector>
 
 #include <tbb/global_control.h>
-#include <yaml-cpp/yaml.h>
 #include <CLI/CLI.hpp>
 
-#include "hv_core/config.h"
 #include "hv_core/memory.h"
 #include "hv_replay/navigation_run.h"
 #include "hv_sim/world.h"
+#include "simulation_arguments.h"
 #include "tool.h"
 
 namespace {
 
-struct Arguments {
+struct Arguments : SimulationArguments {
   hv::replay::NavigationRunOptions options;
-  hv::sim::LiveConfig simulation;
-  std::string config;
   std::string scenario = "random";
-  int threads = 0;
-  bool no_people = false;
   bool json = false;
 };
-
-std::string Worlds() {
-  std::string names;
-  for (const std::string& name : hv::sim::WorldNames()) {
-    names += (names.empty() ? "" : ", ") + name;
-  }
-  return names;
-}
-
-void DeclareSimulation(CLI::App& app, Arguments& arguments) {
-  hv::sim::LiveConfig& simulation = arguments.simulation;
-  app.add_option("--world", simulation.world,
-                 "one of " + Worlds() + "; or the YAML of a floor plan")
-      ->capture_default_str();
-  app.add_option("--world-seed", simulation.world_seed, "of clutter alone; below 0: as --seed")
-      ->capture_default_str();
-  app.add_option("--seed", simulation.seed, "of start, goals and every noise")
-      ->capture_default_str();
-  app.add_option("--point-share", simulation.point_share,
-                 "share of LiDAR columns fired, in (0, 1], for speed")
-      ->check(CLI::Range(0.01, 1.0))
-      ->capture_default_str();
-  app.add_flag("--no-people", arguments.no_people, "nobody walks around");
-}
 
 void Declare(CLI::App& app, Arguments& arguments) {
   hv::replay::NavigationRunOptions& options = arguments.options;
@@ -56,8 +27,6 @@ void Declare(CLI::App& app, Arguments& arguments) {
                  "map folder with a grid; without one, odometry alone is driven by");
   app.add_option("--map-truth", options.map_truth,
                  "TUM file, true poses of the run that made the map, to judge by");
-  app.add_option("--config", arguments.config, "configuration (YAML), e.g. config/robot.yaml")
-      ->required();
   app.add_option("--goals", options.goals, "how many are driven to")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -70,9 +39,6 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_flag("--truth-pose", options.truth_pose,
                "the robot is told where it is, instead of odometry and localisation");
   app.add_option("--out", options.out, "folder for the results, created when missing")->required();
-  app.add_option("--threads", arguments.threads, "threads of all work; 0: as configured")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
   app.add_flag("--json", arguments.json, "print the summary as one JSON object");
 }
 
@@ -90,18 +56,12 @@ void Print(const std::vector<hv::replay::NavigationTrial>& trials, const std::st
 }
 
 int Run(Arguments& arguments) {
-  hv::replay::SlamConfig config;
-  hv::ReadConfig(hv::LoadYamlFile(arguments.config), arguments.config, config);
-  if (arguments.threads > 0) config.system.odometry.threads = arguments.threads;
-  const tbb::global_control limit(
-      tbb::global_control::max_allowed_parallelism,
-      arguments.threads > 0
-          ? static_cast<std::size_t>(arguments.threads)
-          : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-  arguments.simulation.people = !arguments.no_people;
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  LargestParallelism(arguments));
   arguments.options.scenario = hv::replay::ParseScenario(arguments.scenario);
   hv::replay::NavigationRun run(
-      config, hv::sim::MakeWorld(arguments.simulation.world, arguments.simulation.clutter_seed()),
+      ReadSlamConfig(arguments),
+      hv::sim::MakeWorld(arguments.simulation.world, arguments.simulation.clutter_seed()),
       arguments.simulation, arguments.options);
   const std::vector<hv::replay::NavigationTrial> trials = run.Run();
   if (arguments.json) {

@@ -34,6 +34,13 @@ float FloatAt(const std::uint8_t* bytes) {
   return value;
 }
 
+/// Whether a pose of unit quaternion turns nothing about any axis.
+bool IsUpright(const geometry_msgs::Pose& pose) {
+  constexpr double kTolerance = 1e-6;
+  const auto& q = pose.orientation;
+  return Eigen::Vector3d(q.x, q.y, q.z).norm() < kTolerance;
+}
+
 }  // namespace
 
 bool IsPose(const geometry_msgs::Pose& pose) {
@@ -63,6 +70,26 @@ std::string ReadPoints(const PointCloud2& cloud, std::vector<Point>& points) {
       if (finite) points.push_back(point);
     }
   }
+  return "";
+}
+
+std::string ReadGrid(const nav_msgs::OccupancyGrid& message, OccupancyGrid& grid) {
+  constexpr std::uint32_t kLongest = 20000;  // cells of a side
+  const auto& info = message.info;
+  if (!(info.resolution > 0.0F) || !std::isfinite(info.resolution)) {
+    return "the resolution of the grid is not positive";
+  }
+  if (info.width == 0 || info.height == 0) return "the grid is empty";
+  const bool fits = info.width <= kLongest && info.height <= kLongest &&
+                    message.data.size() == std::size_t{info.width} * info.height;
+  if (!fits) return "sizes of the grid contradict or are too large";
+  if (!IsPose(info.origin)) return "the origin of the grid is not a finite pose";
+  if (!IsUpright(info.origin)) return "the grid is turned";
+  grid.resolution_m = static_cast<double>(info.resolution);
+  grid.origin = ToVector(info.origin.position).head<2>();
+  grid.width = static_cast<int>(info.width);
+  grid.height = static_cast<int>(info.height);
+  grid.cells.assign(message.data.begin(), message.data.end());
   return "";
 }
 

@@ -13,22 +13,29 @@ namespace hv::explore {
 enum class Cell : std::uint8_t { kUnknown, kFree, kOccupied };
 
 /// What is known of a place: a grid of cells that remembers which of them changed since the changes
-/// were last taken care of. Cells are named by coordinates or by index, rows of growing y, x
-/// fastest. Not thread-safe.
+/// were last taken care of. Cells are named by coordinates, from `low` on, or by index, rows of
+/// growing y, x fastest. A larger belief of the same place, with a lower `low`, names its cells by
+/// the same coordinates. Not thread-safe.
 class Belief {
  public:
   /// Every cell is unknown.
-  Belief(int width, int height);
+  Belief(int width, int height, const Eigen::Vector2i& low = Eigen::Vector2i::Zero());
 
   int width() const { return width_; }
   int height() const { return height_; }
+  const Eigen::Vector2i& low() const { return low_; }  ///< the cell of index 0
   int free_count() const { return free_count_; }
 
   bool Contains(const Eigen::Vector2i& cell) const {
-    return cell.x() >= 0 && cell.y() >= 0 && cell.x() < width_ && cell.y() < height_;
+    const Eigen::Vector2i at = cell - low_;
+    return at.x() >= 0 && at.y() >= 0 && at.x() < width_ && at.y() < height_;
   }
-  int IndexOf(const Eigen::Vector2i& cell) const { return cell.y() * width_ + cell.x(); }
-  Eigen::Vector2i CellOf(int index) const { return {index % width_, index / width_}; }
+  int IndexOf(const Eigen::Vector2i& cell) const {
+    return (cell.y() - low_.y()) * width_ + cell.x() - low_.x();
+  }
+  Eigen::Vector2i CellOf(int index) const {
+    return {low_.x() + index % width_, low_.y() + index / width_};
+  }
   Cell At(int index) const { return cells_[static_cast<std::size_t>(index)]; }
   Cell At(const Eigen::Vector2i& cell) const { return At(IndexOf(cell)); }
 
@@ -60,6 +67,7 @@ class Belief {
 
   int width_;
   int height_;
+  Eigen::Vector2i low_;
   int free_count_ = 0;
   std::vector<Cell> cells_;
   std::vector<CellChange> changes_;

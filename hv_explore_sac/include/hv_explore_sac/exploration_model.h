@@ -1,6 +1,8 @@
 #pragma once
 
 #include <deque>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "hv_explore_sac/belief.h"
@@ -17,7 +19,15 @@ namespace hv::explore {
 /// the belief (a simulated sensor, the grid of the navigation) and calls Update(). Not thread-safe.
 class ExplorationModel {
  public:
-  ExplorationModel(const ExplorationConfig& config, int width, int height);
+  /// `low`: the lowest cell, see Belief.
+  ExplorationModel(const ExplorationConfig& config, int width, int height,
+                   const Eigen::Vector2i& low = Eigen::Vector2i::Zero());
+
+  /// From now on viewpoints and edges lie where another belief of the same cells is free: where a
+  /// robot that has a size may stand; what is joined over its cells is joined by edges too. What is
+  /// seen still follows from `belief()`.
+  void SetGround(Belief ground) { ground_ = std::make_unique<Belief>(std::move(ground)); }
+  const Belief& ground() const { return ground_ ? *ground_ : belief_; }
 
   Belief& belief() { return belief_; }
   const Belief& belief() const { return belief_; }
@@ -26,9 +36,14 @@ class ExplorationModel {
   const FrontierViews& views() const { return views_; }
   const GraphSearch& ways() const { return ways_; }  ///< from the robot's viewpoint
 
-  /// Takes over the changes of the belief. The robot stands at `cell`, which must be free; it
+  /// Takes over the changes of the beliefs. The robot stands at `cell`, which must be free; it
   /// becomes a viewpoint that has been visited.
   void Update(const Eigen::Vector2i& cell);
+
+  /// For a model that is made anew of a place where the robot has been: it stood at these cells,
+  /// oldest first. Those that are free become viewpoints, and what lies within `radius` [cells] of
+  /// any counts as visited. The changes of the beliefs are taken over.
+  void Recall(const std::vector<Eigen::Vector2i>& stood, double radius);
 
   int robot() const { return robot_; }  ///< its viewpoint
 
@@ -39,10 +54,12 @@ class ExplorationModel {
   void Observe(Observation& observation) const;
 
  private:
+  void TakeChanges();
   void Remember(const Eigen::Vector2i& cell);
 
   ExplorationConfig config_;
   Belief belief_;
+  std::unique_ptr<Belief> ground_;  ///< null: all that is free
   Frontiers frontiers_;
   ViewpointGraph graph_;
   FrontierViews views_;

@@ -13,7 +13,7 @@ namespace hv::explore {
 /// The border between what is known to be free and what is unknown. The belief is summed up in
 /// blocks (occupied if one cell is, else unknown if one cell is, else free); a free block with some
 /// unknown ones around it is a frontier point, named by the index of the block and located at its
-/// first cell. Not thread-safe.
+/// first cell. Blocks begin at the lowest cell of the belief. Not thread-safe.
 class Frontiers {
  public:
   Frontiers(const FrontierConfig& config, const Belief& belief);
@@ -27,9 +27,11 @@ class Frontiers {
   const std::vector<int>& added() const { return added_; }
   const std::vector<int>& removed() const { return removed_; }
 
+  int block() const { return block_; }  ///< edge of a block [cells]
+
   bool IsFrontier(int point) const { return place_[static_cast<std::size_t>(point)] >= 0; }
   Eigen::Vector2i CellOf(int point) const {
-    return block_ * Eigen::Vector2i(point % columns_, point / columns_);
+    return low_ + block_ * Eigen::Vector2i(point % columns_, point / columns_);
   }
 
   /// Mean of the points [cells]; zero when there is none.
@@ -49,6 +51,7 @@ class Frontiers {
 
   FrontierConfig config_;
   int block_;
+  Eigen::Vector2i low_;
   int columns_;
   int rows_;
   std::vector<std::int16_t> unknown_cells_;   ///< of each block

@@ -10,9 +10,9 @@
 namespace hv::explore {
 
 /// Viewpoints in known free space and the edges between them (paper, section 3.3.1): samples of a
-/// uniform lattice, and the places that were added. Edges lead from a viewpoint to those of its
-/// nearest ones to which the straight line is known to be free. Viewpoints are named by a number
-/// that stays theirs until free space is lost. Not thread-safe.
+/// uniform lattice through cell (0, 0), and the places that were added. Edges lead from a viewpoint
+/// to those of its nearest ones to which the straight line is known to be free. Viewpoints are
+/// named by a number that stays theirs until free space is lost. Not thread-safe.
 class ViewpointGraph {
  public:
   ViewpointGraph(const ViewpointConfig& config, const Belief& belief);
@@ -59,6 +59,7 @@ class ViewpointGraph {
   int BlockedBetween(int first, int second, const Belief& belief) const;
 
   ViewpointConfig config_;
+  Eigen::Vector2i low_;
   int width_;
   std::vector<char> on_lattice_;   ///< of each cell
   std::vector<int> viewpoint_at_;  ///< of each cell, or -1

@@ -23,4 +23,15 @@ struct DrivenLine {
 void DrawDrives(const OccupancyGrid& map, const std::vector<DrivenLine>& lines,
                 const std::string& title, const std::string& path);
 
+/// The way of one drive in the map [m].
+struct DrivenWay {
+  std::vector<Eigen::Vector2d> points;
+  std::vector<Eigen::Vector2d> contacts;  ///< where the robot collided
+};
+
+/// Draws a way over the map, from dark at its start to bright at its end, with both ends and
+/// collisions. Throws InputError as DrawDrives() does.
+void DrawExploration(const OccupancyGrid& map, const DrivenWay& way, const std::string& title,
+                     const std::string& path);
+
 }  // namespace hv::replay

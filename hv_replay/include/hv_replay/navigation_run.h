@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hv_core/occupancy_grid.h"
+#include "hv_replay/collision_log.h"
 #include "hv_replay/csv_log.h"
 #include "hv_replay/goal_sampler.h"
 #include "hv_replay/navigation_scenario.h"
@@ -44,7 +45,7 @@ class NavigationRun {
   std::vector<NavigationTrial> Run();
 
  private:
-  void WaitForPlace();
+  void FindPlace();
   std::optional<GoalSampler::Goal> NextGoal();
   NavigationTrial Drive(const GoalSampler::Goal& goal, int number);
   void Note(const DriveCycle& cycle, NavigationTrial& trial);
@@ -69,7 +70,7 @@ class NavigationRun {
   std::optional<sim::TimedBox> box_;  ///< of the drive under way
   DriveCycle last_;
   std::unique_ptr<CsvLog> trial_log_;
-  std::unique_ptr<CsvLog> collision_log_;
+  std::unique_ptr<CollisionLog> collision_log_;
   std::unique_ptr<CsvLog> cycle_log_;
 };
 

@@ -47,6 +47,9 @@ struct NavigationTrial {
 std::string TrialHeader();
 std::string TrialRow(const NavigationTrial& trial);
 
+/// Count, median, 95 % quantile, maximum and how many took more than 100 ms.
+JsonObject TimesJson(const std::vector<double>& milliseconds);
+
 /// Over all trials, for summary.json and `--json`.
 JsonObject SummaryJson(const std::vector<NavigationTrial>& trials);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hv_core/config.h"
+#include "hv_explore_sac/explorer_config.h"
 #include "hv_lio/system_config.h"
 #include "hv_loop_btc/loop_closer.h"
 #include "hv_loop_btc/map_builder.h"
@@ -12,7 +13,8 @@ namespace hv::replay {
 
 /// The whole configuration file: what the odometry node reads (`input`, `points`, `odometry`,
 /// `output`), what the loop closing node reads (`loop`, `map`, `mapping`), what localisation reads
-/// (`localization`) and what navigation reads (`navigation`).
+/// (`localization`), what navigation reads (`navigation`) and what exploration reads
+/// (`exploration`).
 struct SlamConfig {
   lio::SystemConfig system;
   loop::LoopConfig loop;
@@ -20,6 +22,7 @@ struct SlamConfig {
   loop::MappingNodeConfig mapping;  ///< of the node alone, kept so that one file serves all
   relocalize::LocalizerConfig localization;
   navigation::NavigationConfig navigation;
+  explore::RobotExplorationConfig exploration;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

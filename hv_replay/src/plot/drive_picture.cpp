@@ -76,18 +76,31 @@ void DrawLine(Canvas& canvas, const Axes& axes, const DrivenLine& line) {
   canvas.Polyline(pixels, line.failed ? kFailedColour : kLineColour, line.failed ? 2.5 : 1.5);
 }
 
-void DrawGoal(Canvas& canvas, const Axes& axes, const DrivenLine& line) {
-  const PixelPoint goal = axes.ToPixel(line.goal.x(), line.goal.y());
-  canvas.Disc(goal, line.failed ? 7.0 : 4.0, line.failed ? kFailedColour : kReachedColour);
-  for (const Eigen::Vector2d& contact : line.contacts) {
+void DrawContacts(Canvas& canvas, const Axes& axes, const std::vector<Eigen::Vector2d>& contacts) {
+  for (const Eigen::Vector2d& contact : contacts) {
     canvas.Disc(axes.ToPixel(contact.x(), contact.y()), 6.0, kContactColour);
   }
 }
 
-}  // namespace
+void DrawGoal(Canvas& canvas, const Axes& axes, const DrivenLine& line) {
+  const PixelPoint goal = axes.ToPixel(line.goal.x(), line.goal.y());
+  canvas.Disc(goal, line.failed ? 7.0 : 4.0, line.failed ? kFailedColour : kReachedColour);
+  DrawContacts(canvas, axes, line.contacts);
+}
 
-void DrawDrives(const OccupancyGrid& map, const std::vector<DrivenLine>& lines,
-                const std::string& title, const std::string& path) {
+/// Each piece in the colour of the share of the way that it lies at.
+void DrawWay(Canvas& canvas, const Axes& axes, const std::vector<Eigen::Vector2d>& points) {
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(points.size());
+    canvas.Line(axes.ToPixel(points[i - 1].x(), points[i - 1].y()),
+                axes.ToPixel(points[i].x(), points[i].y()), plot::ScaleColour(share), 3.0);
+  }
+}
+
+/// Draws the map, hands canvas and axes to `draw`, and saves the picture.
+template <typename Draw>
+void DrawOnMap(const OccupancyGrid& map, const std::string& title, const std::string& path,
+               const Draw& draw) {
   const Extent extent = KnownExtent(map);
   const double scale = kLongSide / std::max({extent.x.span(), extent.y.span(), 1.0});
   const double width = std::max(scale * extent.x.span(), 600.0);
@@ -98,17 +111,39 @@ void DrawDrives(const OccupancyGrid& map, const std::vector<DrivenLine>& lines,
   Axes axes = Axes::EqualScale(canvas, area, extent.x, extent.y);
   axes.DrawFrame({title, "x [m]", "y [m]"});
   DrawMap(canvas, axes, map);
-  for (const bool failed : {false, true}) {
-    for (const DrivenLine& line : lines) {
-      if (line.failed == failed) DrawLine(canvas, axes, line);
-    }
-  }
-  for (const DrivenLine& line : lines) DrawGoal(canvas, axes, line);
-  axes.Legend({{"driven", kLineColour},
-               {"reached", kReachedColour},
-               {"failed", kFailedColour},
-               {"collision", kContactColour}});
+  draw(canvas, axes);
   canvas.Save(path);
+}
+
+}  // namespace
+
+void DrawDrives(const OccupancyGrid& map, const std::vector<DrivenLine>& lines,
+                const std::string& title, const std::string& path) {
+  DrawOnMap(map, title, path, [&lines](Canvas& canvas, Axes& axes) {
+    for (const bool failed : {false, true}) {
+      for (const DrivenLine& line : lines) {
+        if (line.failed == failed) DrawLine(canvas, axes, line);
+      }
+    }
+    for (const DrivenLine& line : lines) DrawGoal(canvas, axes, line);
+    axes.Legend({{"driven", kLineColour},
+                 {"reached", kReachedColour},
+                 {"failed", kFailedColour},
+                 {"collision", kContactColour}});
+  });
+}
+
+void DrawExploration(const OccupancyGrid& map, const DrivenWay& way, const std::string& title,
+                     const std::string& path) {
+  DrawOnMap(map, title, path, [&way](Canvas& canvas, Axes& axes) {
+    DrawWay(canvas, axes, way.points);
+    DrawContacts(canvas, axes, way.contacts);
+    if (way.points.empty()) return;
+    const Eigen::Vector2d& start = way.points.front();
+    const Eigen::Vector2d& end = way.points.back();
+    axes.Marker(start.x(), start.y(), kReachedColour, "start");
+    axes.Marker(end.x(), end.y(), kFailedColour, "end");
+  });
 }
 
 }  // namespace hv::replay

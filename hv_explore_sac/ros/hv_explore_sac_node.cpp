@@ -1,0 +1,31 @@
+#include <iostream>
+
+#include <ros/ros.h>
+
+#include "exploration_node.h"
+#include "hv_core/error.h"
+#include "hv_core/memory.h"
+#include "hv_ros/interrupt.h"
+
+int main(int argc, char** argv) {
+  hv::KeepFreedMemory();
+  const hv::Interrupt interrupt;
+  ros::init(argc, argv, "hv_explore_sac", ros::init_options::NoSigintHandler);
+  try {
+    // The connections outlive the node, so that the goal under way is cancelled.
+    const ros::NodeHandle connections;
+    ros::AsyncSpinner spinner(1);
+    {
+      const hv::explore::ExplorationNode node(ros::NodeHandle(), ros::NodeHandle("~"));
+      spinner.start();
+      interrupt.Wait();
+      spinner.stop();
+    }
+    ros::WallDuration(0.1).sleep();
+  } catch (const hv::InputError& error) {
+    // The last node handle is gone here and has taken rosconsole with it.
+    std::cerr << "hv_explore_sac cannot start:\n" << error.what() << std::endl;
+    return 1;
+  }
+  return 0;
+}
