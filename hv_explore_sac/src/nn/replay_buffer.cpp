@@ -4,6 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "number_bytes.h"
+
 namespace hv::explore::nn {
 namespace {
 
@@ -68,6 +70,32 @@ GraphInput PackedGraph::Unpack() const {
 std::size_t PackedGraph::bytes() const {
   return sizeof(PackedGraph) + BytesOf(numbers_) + BytesOf(positions_) + BytesOf(globals_) +
          BytesOf(degrees_) + BytesOf(neighbours_) + BytesOf(actions_);
+}
+
+void PackedGraph::AppendTo(std::string& bytes) const {
+  AppendNumber(nodes_, bytes);
+  AppendNumber(features_, bytes);
+  AppendNumber(current_, bytes);
+  AppendNumbers(numbers_, bytes);
+  AppendNumbers(positions_, bytes);
+  AppendNumbers(globals_, bytes);
+  AppendNumbers(degrees_, bytes);
+  AppendNumbers(neighbours_, bytes);
+  AppendNumbers(actions_, bytes);
+}
+
+PackedGraph PackedGraph::TakeFrom(std::string_view& bytes) {
+  PackedGraph graph;
+  TakeNumber(bytes, graph.nodes_);
+  TakeNumber(bytes, graph.features_);
+  TakeNumber(bytes, graph.current_);
+  TakeNumbers(bytes, graph.numbers_);
+  TakeNumbers(bytes, graph.positions_);
+  TakeNumbers(bytes, graph.globals_);
+  TakeNumbers(bytes, graph.degrees_);
+  TakeNumbers(bytes, graph.neighbours_);
+  TakeNumbers(bytes, graph.actions_);
+  return graph;
 }
 
 ReplayBuffer::ReplayBuffer(std::size_t capacity, int pyramid_levels)

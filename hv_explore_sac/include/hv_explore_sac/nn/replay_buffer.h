@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <random>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "hv_explore_sac/nn/graph_sample.h"
@@ -17,6 +19,11 @@ class PackedGraph {
   explicit PackedGraph(const GraphInput& input);
   GraphInput Unpack() const;
   std::size_t bytes() const;
+
+  /// Appends itself to `bytes`, in the order of bytes of this machine.
+  void AppendTo(std::string& bytes) const;
+  /// Takes what AppendTo() wrote off the front of `bytes`. Throws InputError when it is cut short.
+  static PackedGraph TakeFrom(std::string_view& bytes);
 
  private:
   std::uint32_t nodes_ = 0;
@@ -55,6 +62,8 @@ struct Transition {
   bool done = false;
   GraphSample next;
   Eigen::VectorXf label;
+  /// What each action was measured to bring until the end; empty where that is not known.
+  Eigen::VectorXf returns;
 };
 
 /// A ring of transitions: the oldest make way. A state is kept once although it is the end of one
