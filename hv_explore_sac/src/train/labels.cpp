@@ -1,5 +1,6 @@
 #include "hv_explore_sac/train/labels.h"
 
+#include <atomic>
 #include <optional>
 #include <random>
 
@@ -95,10 +96,14 @@ std::vector<LabelledState> LabelMap(const ExplorationMap& map, const LabelInputs
 }
 
 std::vector<LabelledState> LabelMaps(const std::vector<const ExplorationMap*>& maps,
-                                     const LabelInputs& inputs, std::uint64_t seed) {
+                                     const LabelInputs& inputs, std::uint64_t seed,
+                                     const std::function<void(double)>& report) {
   std::vector<std::vector<LabelledState>> parts(maps.size());
-  tbb::parallel_for(std::size_t{0}, maps.size(),
-                    [&](std::size_t i) { parts[i] = LabelMap(*maps[i], inputs, seed + i); });
+  std::atomic<std::size_t> done{0};
+  tbb::parallel_for(std::size_t{0}, maps.size(), [&](std::size_t i) {
+    parts[i] = LabelMap(*maps[i], inputs, seed + i);
+    report(static_cast<double>(++done) / static_cast<double>(maps.size()));
+  });
   std::vector<LabelledState> labels;
   for (std::vector<LabelledState>& part : parts) {
     std::move(part.begin(), part.end(), std::back_inserter(labels));

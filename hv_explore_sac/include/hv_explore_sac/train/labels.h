@@ -44,8 +44,10 @@ std::vector<LabelledState> LabelMap(const ExplorationMap& map, const LabelInputs
                                     std::uint64_t seed);
 
 /// The same on many maps, in parallel and yet in their order; map i has the seed `seed` + i.
+/// `report` is told the share that is done, from several threads.
 std::vector<LabelledState> LabelMaps(const std::vector<const ExplorationMap*>& maps,
-                                     const LabelInputs& inputs, std::uint64_t seed);
+                                     const LabelInputs& inputs, std::uint64_t seed,
+                                     const std::function<void(double share)>& report);
 
 /// Kept in a file with a SHA-256. Reading throws InputError, naming the file.
 void WriteLabels(const std::vector<LabelledState>& labels, const std::string& path);
