@@ -150,6 +150,49 @@ Transition ReplayBuffer::Get(std::size_t position) const {
   return transition;
 }
 
+std::string ReplayBuffer::Serialize() const {
+  std::string bytes;
+  AppendNumber(static_cast<std::uint64_t>(capacity_), bytes);
+  AppendNumber(static_cast<std::uint64_t>(next_), bytes);
+  AppendNumber(static_cast<std::uint64_t>(records_.size()), bytes);
+  for (const Record& record : records_) {
+    record.state.AppendTo(bytes);
+    AppendNumber(record.action, bytes);
+    AppendNumber(record.reward, bytes);
+    AppendNumber(record.done, bytes);
+    AppendNumbers(
+        std::vector<float>(record.label.data(), record.label.data() + record.label.size()), bytes);
+  }
+  return bytes;
+}
+
+void ReplayBuffer::Restore(std::string_view bytes) {
+  std::uint64_t capacity = 0;
+  std::uint64_t next = 0;
+  std::uint64_t count = 0;
+  TakeNumber(bytes, capacity);
+  TakeNumber(bytes, next);
+  TakeNumber(bytes, count);
+  if (capacity != capacity_ || count > capacity || next >= capacity) {
+    throw InputError("a replay buffer of another capacity");
+  }
+  std::vector<Record> records;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Record record;
+    record.state = PackedGraph::TakeFrom(bytes);
+    TakeNumber(bytes, record.action);
+    TakeNumber(bytes, record.reward);
+    TakeNumber(bytes, record.done);
+    std::vector<float> label;
+    TakeNumbers(bytes, label);
+    record.label =
+        Eigen::Map<const Eigen::VectorXf>(label.data(), static_cast<Index>(label.size()));
+    records.push_back(std::move(record));
+  }
+  records_ = std::move(records);
+  next_ = static_cast<std::size_t>(next);
+}
+
 std::size_t ReplayBuffer::transitions() const {
   std::size_t count = 0;
   for (std::size_t i = 0; i < records_.size(); ++i) count += IsTransition(i) ? 1 : 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "sac_sums.h"
 
@@ -90,6 +91,13 @@ double Sac::StepCritics(const Eigen::VectorXf& sums) {
   critic_optimiser_.Step(gradient, critic_parameters_);
   target_parameters_ = critic_parameters_;
   return static_cast<double>(sums.tail(Sums::kStatistics)[Sums::kCriticLoss]);
+}
+
+void Sac::AdoptActor(const Eigen::VectorXf& parameters) {
+  if (parameters.size() != actor_parameters_.size()) {
+    throw std::invalid_argument("the policy to adopt has another shape");
+  }
+  actor_parameters_ = parameters;
 }
 
 Eigen::VectorXf Sac::RunBatch(std::size_t count,

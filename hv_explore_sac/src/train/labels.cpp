@@ -7,12 +7,10 @@
 #include <tbb/parallel_for.h>
 
 #include "hv_explore_sac/policy/policy_input.h"
+#include "uniform.h"
 
 namespace hv::explore {
 namespace {
-
-/// In [0, 1), the same with every library.
-double Uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11U) * 0x1.0p-53; }
 
 /// One run on a map with measurements on the way.
 class LabelRun {

@@ -34,6 +34,8 @@ void TrainConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("split", split, "which maps serve what");
   visitor.Section("labels", labels, "where choices are measured");
   visitor.Section("improvement", improvement, "rounds of measuring and learning");
+  visitor.Section("fine_tune", fine_tune, "SAC after the rounds");
+  visitor.Section("reward", reward, "of SAC");
   visitor.Section("sac", sac, "networks and how they learn");
 }
 
@@ -45,6 +47,8 @@ void TrainConfig::Validate(ConfigProblems& problems) const {
   split.Validate(problems);
   labels.Validate(problems);
   improvement.Validate(problems);
+  fine_tune.Validate(problems);
+  reward.Validate(problems);
   sac.Validate(problems);
 }
 

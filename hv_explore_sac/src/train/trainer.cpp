@@ -18,10 +18,13 @@ constexpr int kPoints = 10;
 /// Maps for validation on which labels are made as well.
 constexpr std::size_t kGaugeMaps = 60;
 
-/// What random numbers are for; each purpose in each round has its own.
-enum Purpose : std::uint64_t { kLabels, kGauge, kFit, kPurposes };
+std::string LabelName(int round) { return "labels_" + std::to_string(round + 1); }
 
-constexpr std::uint64_t kSeedStep = 1U << 20U;  // more than there are maps
+/// What random numbers are for; each purpose in each round has its own.
+enum Purpose : std::uint64_t { kLabels, kGauge, kFit, kFirstEpisodes, kEpisodes, kPurposes };
+
+constexpr std::uint64_t kSeedStep = 1U << 24U;  // more than there are maps, or episodes of SAC
+constexpr std::uint64_t kCycleStep = 1000;      // more than there are episodes in a cycle
 
 }  // namespace
 
@@ -52,6 +55,7 @@ void Trainer::Run() {
     ++round_;
     Save();
   }
+  if (cycle_ < config_.fine_tune.cycles) FineTune();
 }
 
 void Trainer::Begin() {
@@ -80,14 +84,14 @@ Rollout Trainer::RolloutOf(std::shared_ptr<const PolicyNetwork> network) const {
 }
 
 void Trainer::CollectLabels() {
-  Label(ShareOf(training_, ranks_), Seed(kLabels), LabelPath("labels", round_));
+  Label(ShareOf(training_, ranks_), Seed(kLabels), RankPath(LabelName(round_)));
   std::vector<const ExplorationMap*> few = validation_;
   few.resize(std::min(few.size(), kGaugeMaps));
-  gauge_ = Label(few, Seed(kGauge), LabelPath("gauge", round_));
+  gauge_ = Label(few, Seed(kGauge), RankPath("gauge"));
   labels_.clear();
   for (int round = std::max(0, round_ + 1 - config_.improvement.kept_rounds); round <= round_;
        ++round) {
-    std::vector<LabelledState> more = ReadLabels(LabelPath("labels", round));
+    std::vector<LabelledState> more = ReadLabels(RankPath(LabelName(round)));
     std::move(more.begin(), more.end(), std::back_inserter(labels_));
   }
 }
@@ -109,12 +113,7 @@ std::shared_ptr<const PolicyNetwork> Trainer::Learn() {
   learning.seed += round_;
   learning.actor_optimiser.decay_steps = improvement.updates;
   nn::Sac sac(learning, PolicyNetwork::Shape(), PolicyInput::kGlobals);
-  if (ranks_.size() > 1) {
-    sac.reduce = [this](Eigen::VectorXf& sums, double& samples) {
-      ranks_.Sum(sums.data(), static_cast<std::size_t>(sums.size()));
-      samples *= ranks_.size();
-    };
-  }
+  Reduce(ranks_, sac);
   const int levels = learning.actor.pyramid_levels;
   const int batch = std::max(1, improvement.batch / ranks_.size());
   int done = 0;
@@ -137,8 +136,46 @@ std::shared_ptr<const PolicyNetwork> Trainer::Learn() {
                                          sac.actor_parameters());
 }
 
+std::unique_ptr<FineTuner> Trainer::MakeFineTuner() {
+  const EpisodeInputs inputs{config_.exploration, config_.policy, config_.reward, &sensor_};
+  auto tuner =
+      std::make_unique<FineTuner>(config_.fine_tune, inputs, config_.sac, training_, ranks_);
+  if (cycle_ > 0) {
+    tuner->Load(PathOf("sac.bin"), RankPath("replay"));
+    return tuner;
+  }
+  report_("SAC: first episodes and values", 0.0);
+  tuner->Begin(best_->parameters(), Seed(kFirstEpisodes));
+  return tuner;
+}
+
+void Trainer::FineTune() {
+  if (best_ == nullptr) return;
+  const std::unique_ptr<FineTuner> tuner = MakeFineTuner();
+  const FineTuneConfig& config = config_.fine_tune;
+  while (cycle_ < config.cycles) {
+    CurvePoint now;
+    now.round = config_.improvement.rounds + 1;
+    const int next = std::min(config.cycles, cycle_ + config.judge_every);
+    for (; cycle_ < next; ++cycle_) {
+      report_("SAC", static_cast<double>(cycle_) / config.cycles);
+      now.loss = tuner->Cycle(Seed(kEpisodes) + static_cast<std::uint64_t>(cycle_) * kCycleStep)
+                     .critic_loss;
+    }
+    now.updates =
+        config_.improvement.rounds * config_.improvement.updates + cycle_ * config.updates;
+    now.states = static_cast<int>(tuner->states());
+    now.gain = std::numeric_limits<double>::quiet_NaN();
+    curve_.push_back(now);
+    Judge(std::make_shared<PolicyNetwork>(PolicySettings{config_.policy, config_.sac.actor},
+                                          tuner->sac().actor_parameters()));
+    tuner->Save(PathOf("sac.bin"), RankPath("replay"));
+    Save();
+  }
+}
+
 void Trainer::Judge(std::shared_ptr<const PolicyNetwork> candidate) {
-  report_("round " + std::to_string(round_ + 1) + ": trying", 0.0);
+  report_("trying", 0.0);
   const double travel =
       Validate(validation_, config_.exploration, sensor_, RolloutOf(candidate), ranks_).travel;
   curve_.back().travel = travel;
@@ -155,6 +192,7 @@ void Trainer::Save() const {
   nn::Checkpoint state;
   state.text = ToYaml(config_);
   state.PutNumber("round", round_);
+  state.PutNumber("cycle", cycle_);
   state.PutNumber("utility_travel", utility_travel_);
   state.PutNumber("best_travel", best_travel_);
   state.Write(PathOf("state.bin"));
@@ -166,15 +204,15 @@ void Trainer::Resume() {
     throw InputError(PathOf("state.bin") + ": was made with another configuration");
   }
   round_ = static_cast<int>(state.Number("round"));
+  cycle_ = static_cast<int>(state.Number("cycle"));
   utility_travel_ = state.Number("utility_travel");
   best_travel_ = state.Number("best_travel");
   if (best_travel_ < utility_travel_) best_ = PolicyNetwork::Read(PathOf("policy.bin"));
   curve_ = ReadCurve(PathOf("curve.csv"));
 }
 
-std::string Trainer::LabelPath(const std::string& kind, int round) const {
-  return PathOf(kind + "_" + std::to_string(round + 1) + "_" + std::to_string(ranks_.rank()) +
-                ".bin");
+std::string Trainer::RankPath(const std::string& name) const {
+  return PathOf(name + "_" + std::to_string(ranks_.rank()) + ".bin");
 }
 
 std::uint64_t Trainer::Seed(std::uint64_t purpose) const {

@@ -78,6 +78,11 @@ class ReplayBuffer {
   std::vector<std::size_t> Draw(std::size_t count, std::mt19937_64& random) const;
   Transition Get(std::size_t position) const;
 
+  /// All that it holds, in the order of bytes of this machine.
+  std::string Serialize() const;
+  /// Throws InputError for what is cut short or was made with another capacity.
+  void Restore(std::string_view bytes);
+
   std::size_t states() const { return records_.size(); }
   std::size_t transitions() const;
   std::size_t bytes() const;

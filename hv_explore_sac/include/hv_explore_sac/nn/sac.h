@@ -63,6 +63,9 @@ class Sac {
   /// One step of the critics alone towards the `returns` of all actions, after which targets equal
   /// critics; gives the mean loss.
   double FitValues(std::size_t count, const Fetch& fetch);
+  /// Takes over a policy of the same shape that was learned elsewhere. Throws
+  /// std::invalid_argument.
+  void AdoptActor(const Eigen::VectorXf& parameters);
   /// The present actor becomes the prior from which J_pi punishes divergence.
   void KeepPrior() { prior_ = actor_parameters_; }
 

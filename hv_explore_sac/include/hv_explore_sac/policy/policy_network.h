@@ -32,6 +32,7 @@ class PolicyNetwork {
 
   static nn::NetworkShape Shape();
   const PolicySettings& settings() const { return settings_; }
+  const Eigen::VectorXf& parameters() const { return parameters_; }
   nn::ActionDistribution Choose(const nn::GraphInput& input) const;
 
  private:

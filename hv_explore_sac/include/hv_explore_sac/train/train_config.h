@@ -6,6 +6,7 @@
 #include "hv_explore_sac/planner.h"
 #include "hv_explore_sac/policy/policy_config.h"
 #include "hv_explore_sac/reward.h"
+#include "hv_explore_sac/train/fine_tuner.h"
 #include "hv_explore_sac/train/labels.h"
 
 namespace hv::explore {
@@ -40,6 +41,8 @@ struct TrainConfig {
   SplitConfig split;
   LabelConfig labels;
   ImprovementConfig improvement;
+  FineTuneConfig fine_tune;
+  RewardConfig reward;
   nn::SacConfig sac;
 
   void Describe(ConfigVisitor& visitor);

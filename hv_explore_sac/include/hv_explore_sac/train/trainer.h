@@ -16,11 +16,12 @@ namespace hv::explore {
 /// Policy improvement by rollouts. In each round the policy so far (first the planner `utility`)
 /// explores maps; at some of its decisions every goal is tried on the true map, with that policy
 /// taking all later decisions; a new network learns which goals turned out well, and becomes the
-/// policy when it is better on maps kept aside for that.
+/// policy when it is better on maps kept aside for that. Then discrete SAC goes on from the best
+/// policy.
 ///
-/// The folder holds policy.bin (the best so far, as the planner `sac` takes it), curve.csv,
-/// labels_<round>_<rank>.bin and state.bin, from which Resume() goes on; what comes out is then the
-/// same as without the break. Not thread-safe; uses TBB's threads.
+/// The folder holds policy.bin (the best so far, as the planner `sac` takes it), curve.csv, and
+/// what Resume() goes on from: state.bin, labels_<round>_<rank>.bin, sac.bin, replay_<rank>.bin.
+/// What comes out is then the same as without the break. Not thread-safe; uses TBB's threads.
 class Trainer {
  public:
   /// What is being done, for a progress line.
@@ -30,9 +31,10 @@ class Trainer {
   Trainer(const TrainConfig& config, const std::vector<ExplorationMap>& maps, std::string folder,
           Ranks& ranks, Report report);
 
-  /// Goes on from the folder's last finished round. Throws InputError when there is none.
+  /// Goes on from the folder's last finished round, or the last time that SAC's policy was tried.
+  /// Throws InputError when there is none.
   void Resume();
-  /// All rounds that are left.
+  /// All that is left.
   void Run();
 
   const std::vector<CurvePoint>& curve() const { return curve_; }
@@ -49,10 +51,12 @@ class Trainer {
   std::vector<LabelledState> Label(const std::vector<const ExplorationMap*>& maps,
                                    std::uint64_t seed, const std::string& path) const;
   std::shared_ptr<const PolicyNetwork> Learn();
+  void FineTune();
+  std::unique_ptr<FineTuner> MakeFineTuner();
   void Judge(std::shared_ptr<const PolicyNetwork> candidate);
   void Save() const;
   std::string PathOf(const std::string& name) const { return folder_ + "/" + name; }
-  std::string LabelPath(const std::string& kind, int round) const;
+  std::string RankPath(const std::string& name) const;
   std::uint64_t Seed(std::uint64_t purpose) const;
 
   TrainConfig config_;
@@ -63,6 +67,7 @@ class Trainer {
   std::vector<const ExplorationMap*> training_;
   std::vector<const ExplorationMap*> validation_;
   int round_ = 0;
+  int cycle_ = 0;                ///< of SAC
   double utility_travel_ = 0.0;  ///< on the maps for validation [cells]
   double best_travel_ = 0.0;
   std::shared_ptr<const PolicyNetwork> best_;
