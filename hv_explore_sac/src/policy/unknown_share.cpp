@@ -10,11 +10,12 @@ void UnknownShare::Count(const Belief& belief) {
   rows_ = (belief.height() + kBlock - 1) / kBlock;
   const auto stride = static_cast<std::size_t>(columns_) + 1;
   sums_.assign(stride * (static_cast<std::size_t>(rows_) + 1), 0);
-  int index = 0;
   for (int y = 0; y < belief.height(); ++y) {
     int* const row = &sums_[stride * static_cast<std::size_t>(y / kBlock + 1) + 1];
-    for (int x = 0; x < belief.width(); ++x, ++index) {
-      row[x / kBlock] += belief.At(index) == Cell::kUnknown ? 1 : 0;
+    for (int block = 0; block < columns_; ++block) {
+      const int first = y * belief.width() + block * kBlock;
+      const int last = std::min(first + kBlock, (y + 1) * belief.width());
+      for (int i = first; i < last; ++i) row[block] += belief.At(i) == Cell::kUnknown ? 1 : 0;
     }
   }
   for (std::size_t i = stride; i < sums_.size(); ++i) {

@@ -17,7 +17,8 @@ class LabelRun {
  public:
   LabelRun(const ExplorationMap& map, const LabelInputs& inputs, std::uint64_t seed)
       : inputs_(inputs),
-        environment_(inputs.exploration, RewardConfig(), *inputs.sensor, map),
+        environment_(inputs.exploration, RewardConfig(), *inputs.sensor, map,
+                     std::make_shared<SightMemory>(*inputs.sensor, map)),
         planner_(inputs.rollout->MakePlanner(map)),
         builder_(inputs.policy),
         random_(seed) {}
