@@ -15,7 +15,9 @@ void UnknownShare::Count(const Belief& belief) {
     for (int block = 0; block < columns_; ++block) {
       const int first = y * belief.width() + block * kBlock;
       const int last = std::min(first + kBlock, (y + 1) * belief.width());
-      for (int i = first; i < last; ++i) row[block] += belief.At(i) == Cell::kUnknown ? 1 : 0;
+      int count = 0;
+      for (int i = first; i < last; ++i) count += belief.At(i) == Cell::kUnknown ? 1 : 0;
+      row[block] += count;
     }
   }
   for (std::size_t i = stride; i < sums_.size(); ++i) {
