@@ -1,11 +1,16 @@
 #include "mpi_ranks.h"
 
 #ifdef HV_HAVE_MPI
-#include <mpi.h>
-#endif
+#include <cstdlib>
 
-#ifdef HV_HAVE_MPI
+#include <mpi.h>
+
 namespace {
+
+/// Alone, MPI would start a helper of its own. What mpirun of Open MPI and of others leaves behind.
+bool StartedByMpirun() {
+  return std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMI_SIZE") != nullptr;
+}
 
 class MpiRanks : public hv::explore::Ranks {
  public:
@@ -36,6 +41,7 @@ class MpiRanks : public hv::explore::Ranks {
 }  // namespace
 
 std::unique_ptr<hv::explore::Ranks> MakeRanks(int* argc, char*** argv) {
+  if (!StartedByMpirun()) return std::make_unique<hv::explore::Ranks>();
   return std::make_unique<MpiRanks>(argc, argv);
 }
 #else
