@@ -10,7 +10,7 @@ build=$(realpath -m "${HV_BUILD_DIR:-$root/build}")
 packages=(
   ca-certificates catkin ccache cmake g++ make ninja-build pkg-config pluginlib-dev
   libactionlib-dev libbenchmark-dev libceres-dev libcli11-dev libdiagnostic-updater-dev libeigen3-dev libembree-dev libgtest-dev
-  liblzf-dev libmove-base-msgs-dev libnav-msgs-dev libnodelet-dev libnodeletlib-dev libnodeletlib-tools liboctomap-dev libompl-dev libopencv-dev libpcl-dev librosbag-dev
+  liblzf-dev libmove-base-msgs-dev libnav-msgs-dev libnodelet-dev libnodeletlib-dev libnodeletlib-tools liboctomap-dev libompl-dev libopencv-dev libopenmpi-dev openmpi-bin libpcl-dev librosbag-dev
   libroscpp-dev librostest-dev libsensor-msgs-dev libssl-dev libstd-srvs-dev libtbb-dev libtf2-eigen-dev
   libtf2-geometry-msgs-dev libtf2-ros-dev libvisualization-msgs-dev libyaml-cpp-dev
   python3-actionlib python3-actionlib-msgs python3-diagnostic-msgs python3-geometry-msgs python3-move-base-msgs python3-nav-msgs python3-numpy python3-rosbag

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 namespace hv::explore {
 
@@ -20,11 +21,13 @@ std::string ToString(Ending ending) {
 }
 
 DungeonEnvironment::DungeonEnvironment(const ExplorationConfig& config, const RewardConfig& reward,
-                                       const RaySensor& sensor, const ExplorationMap& map)
+                                       const RaySensor& sensor, const ExplorationMap& map,
+                                       std::shared_ptr<SightMemory> memory)
     : config_(config),
       reward_(reward),
       sensor_(sensor),
       map_(map),
+      memory_(std::move(memory)),
       free_count_(map.CountFree()),
       model_(config, map.width, map.height) {
   SenseAt(map.start);
@@ -54,7 +57,11 @@ double DungeonEnvironment::explored() const {
 }
 
 void DungeonEnvironment::SenseAt(const Eigen::Vector2i& cell) {
-  sensor_.Sense(map_, cell, model_.belief());
+  if (memory_ != nullptr) {
+    memory_->Sense(cell, model_.belief());
+  } else {
+    sensor_.Sense(map_, cell, model_.belief());
+  }
   model_.Update(cell);
   path_.push_back(cell);
   ending_ = Judge();

@@ -41,7 +41,7 @@ RunResult RunExploration(const ExplorationMap& map, const std::string& planner,
                          const RaySensor& sensor, const EvaluationConfig& config) {
   DungeonEnvironment environment(config.exploration, RewardConfig(), sensor, map);
   const std::unique_ptr<Planner> chooser =
-      MakePlanner(planner, {config.planner, config.exploration, &sensor, &map});
+      config.make_planner(planner, {config.planner, config.exploration, &sensor, &map});
   LoopGuard guard(config.guard);
   Observation observation;
   Stopwatch deciding;

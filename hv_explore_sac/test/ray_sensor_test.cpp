@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "hv_explore_sac/grid_line.h"
+#include "hv_explore_sac/sight_memory.h"
 #include "random_maps.h"
 
 namespace hv::explore {
@@ -47,6 +48,25 @@ TEST_P(Sensing, EqualsBruteForce) {
       const Cell truth = map.IsFree(cell) ? Cell::kFree : Cell::kOccupied;
       const Cell expected = seen[static_cast<std::size_t>(cell)] != 0 ? truth : Cell::kUnknown;
       ASSERT_EQ(belief.At(cell), expected) << cell;
+    }
+  }
+}
+
+TEST_P(Sensing, FromMemoryIsTheSame) {
+  const RaySensor sensor{SimulationConfig()};
+  const ExplorationMap map = RandomMap(GetParam());
+  SightMemory memory(sensor, map);
+  std::mt19937 random(GetParam());
+  const Eigen::Vector2i from = RandomFreeCell(map, random);
+  Belief sensed(map.width, map.height);
+  sensor.Sense(map, from, sensed);
+  for (int time = 0; time < 2; ++time) {
+    Belief remembered(map.width, map.height);
+    memory.Sense(from, remembered);
+    ASSERT_EQ(remembered.changes().size(), sensed.changes().size());
+    for (std::size_t i = 0; i < sensed.changes().size(); ++i) {
+      EXPECT_EQ(remembered.changes()[i].index, sensed.changes()[i].index);
+      EXPECT_EQ(remembered.changes()[i].after, sensed.changes()[i].after);
     }
   }
 }

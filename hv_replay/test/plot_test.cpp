@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "hv_core/error.h"
+#include "hv_replay/curve_plot.h"
 #include "hv_replay/drive_picture.h"
 #include "hv_replay/map_picture.h"
 #include "plot/axes.h"
@@ -191,6 +192,16 @@ TEST_F(PlotFile, PathOnAMapIsInterruptedWhereItIsUnknown) {
   };
   EXPECT_GT(whiteness_between(0.1), 230);
   EXPECT_LT(whiteness_between(5.0), 230);
+}
+
+TEST_F(PlotFile, CurvesLeaveOutWhatIsNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  PlotCurves({{"loss", "updates", "", {{"loss", {1, 2, 3, 4}, {4, nan, 2, 1}}}},
+              {"nothing", "updates", "", {{"none", {1}, {nan}}}}},
+             "Training", path_);
+  const cv::Mat image = cv::imread(path_);
+  ASSERT_FALSE(image.empty());
+  EXPECT_GT(DrawnPixels(image), 1000);
 }
 
 }  // namespace

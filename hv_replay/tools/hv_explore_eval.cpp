@@ -11,6 +11,7 @@
 #include "hv_core/error.h"
 #include "hv_core/file_io.h"
 #include "hv_explore_sac/exploration_run.h"
+#include "hv_explore_sac/policy/policy_planner.h"
 #include "hv_replay/console.h"
 #include "hv_replay/json.h"
 #include "tool.h"
@@ -151,6 +152,18 @@ struct EvalFile {
   }
 };
 
+/// Of all planners, `sac` with the weights of the command line.
+hv::explore::PlannerFactory MakerOf(const Arguments& arguments) {
+  const bool learned = std::count(arguments.planners.begin(), arguments.planners.end(), "sac") > 0;
+  if (!learned) return hv::explore::MakePlanner;
+  if (arguments.weights.empty()) throw hv::InputError("the planner `sac` needs --weights");
+  return [network = hv::explore::PolicyNetwork::Read(arguments.weights)](
+             const std::string& name, const hv::explore::PlannerInputs& inputs) {
+    return name == "sac" ? std::make_unique<hv::explore::PolicyPlanner>(network)
+                         : hv::explore::MakePlanner(name, inputs);
+  };
+}
+
 int Run(const Arguments& arguments) {
   EvaluationConfig config;
   if (!arguments.config.empty()) {
@@ -159,10 +172,7 @@ int Run(const Arguments& arguments) {
   }
   config.threads = arguments.threads;
   if (arguments.no_loop_guard) config.guard.enabled = false;
-  if (std::find(arguments.planners.begin(), arguments.planners.end(), "sac") !=
-      arguments.planners.end()) {
-    throw hv::InputError("the planner `sac` has no weights yet");
-  }
+  config.make_planner = MakerOf(arguments);
   const std::vector<ExplorationMap> maps = hv::explore::ReadExplorationMaps(arguments.maps);
   std::vector<RunResult> results;
   {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "hv_explore_sac/exploration_model.h"
 #include "hv_explore_sac/ray_sensor.h"
 #include "hv_explore_sac/reward.h"
+#include "hv_explore_sac/sight_memory.h"
 
 namespace hv::explore {
 
@@ -20,12 +22,14 @@ enum class Ending {
 std::string ToString(Ending ending);
 
 /// The public dungeon benchmark in two dimensions: the robot drives in straight lines from
-/// viewpoint to viewpoint and senses where it decides, nowhere else. Not thread-safe; the map and
-/// the sensor must outlive it.
+/// viewpoint to viewpoint and senses where it decides, nowhere else. Copies go on by themselves,
+/// but share the `memory` of the map, if there is one. Not thread-safe; the map and the sensor must
+/// outlive it.
 class DungeonEnvironment {
  public:
   DungeonEnvironment(const ExplorationConfig& config, const RewardConfig& reward,
-                     const RaySensor& sensor, const ExplorationMap& map);
+                     const RaySensor& sensor, const ExplorationMap& map,
+                     std::shared_ptr<SightMemory> memory = nullptr);
 
   /// Drives to a viewpoint that is joined to the robot's by an edge, and senses there. Throws
   /// std::invalid_argument when there is no such edge.
@@ -54,6 +58,7 @@ class DungeonEnvironment {
   RewardConfig reward_;
   const RaySensor& sensor_;
   const ExplorationMap& map_;
+  std::shared_ptr<SightMemory> memory_;
   int free_count_;
   ExplorationModel model_;
   std::vector<Eigen::Vector2i> path_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,16 @@
 
 namespace hv::explore {
 
+/// Makes planners by their name. Called from several threads.
+using PlannerFactory =
+    std::function<std::unique_ptr<Planner>(const std::string& name, const PlannerInputs& inputs)>;
+
 /// How planners are compared.
 struct EvaluationConfig {
   ExplorationConfig exploration;
   PlannerConfig planner;
   GuardConfig guard;
+  PlannerFactory make_planner = MakePlanner;
   int threads = 1;
 };
 

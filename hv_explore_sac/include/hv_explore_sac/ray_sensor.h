@@ -38,8 +38,9 @@ class RaySensor {
 
 template <typename Visit>
 void RaySensor::Cast(const ExplorationMap& map, const Eigen::Vector2i& from, Visit visit) const {
-  thread_local std::vector<std::int16_t> depths;  // cells of obstacles on the way, for each node
-  depths.resize(tree_.size());
+  thread_local std::vector<std::int16_t> memory;
+  memory.resize(tree_.size());
+  std::int16_t* const depths = memory.data();  // cells of obstacles on the way, for each node
   for (std::size_t i = 0; i < tree_.size();) {
     const Node& node = tree_[i];
     const int x = from.x() + node.x;
@@ -47,7 +48,7 @@ void RaySensor::Cast(const ExplorationMap& map, const Eigen::Vector2i& from, Vis
     const bool inside = x >= 0 && y >= 0 && x < map.width && y < map.height;
     const int index = y * map.width + x;
     const bool is_free = inside && map.IsFree(index);
-    int depth = node.parent < 0 ? 0 : depths[static_cast<std::size_t>(node.parent)];
+    int depth = node.parent < 0 ? 0 : depths[node.parent];
     const bool behind = is_free && depth > 0;
     depth += is_free ? 0 : 1;
     if (!inside || behind || depth > wall_depth_) {

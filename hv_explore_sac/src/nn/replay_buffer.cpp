@@ -4,6 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "number_bytes.h"
+
 namespace hv::explore::nn {
 namespace {
 
@@ -70,6 +72,32 @@ std::size_t PackedGraph::bytes() const {
          BytesOf(degrees_) + BytesOf(neighbours_) + BytesOf(actions_);
 }
 
+void PackedGraph::AppendTo(std::string& bytes) const {
+  AppendNumber(nodes_, bytes);
+  AppendNumber(features_, bytes);
+  AppendNumber(current_, bytes);
+  AppendNumbers(numbers_, bytes);
+  AppendNumbers(positions_, bytes);
+  AppendNumbers(globals_, bytes);
+  AppendNumbers(degrees_, bytes);
+  AppendNumbers(neighbours_, bytes);
+  AppendNumbers(actions_, bytes);
+}
+
+PackedGraph PackedGraph::TakeFrom(std::string_view& bytes) {
+  PackedGraph graph;
+  TakeNumber(bytes, graph.nodes_);
+  TakeNumber(bytes, graph.features_);
+  TakeNumber(bytes, graph.current_);
+  TakeNumbers(bytes, graph.numbers_);
+  TakeNumbers(bytes, graph.positions_);
+  TakeNumbers(bytes, graph.globals_);
+  TakeNumbers(bytes, graph.degrees_);
+  TakeNumbers(bytes, graph.neighbours_);
+  TakeNumbers(bytes, graph.actions_);
+  return graph;
+}
+
 ReplayBuffer::ReplayBuffer(std::size_t capacity, int pyramid_levels)
     : capacity_(std::max<std::size_t>(capacity, 2)), pyramid_levels_(pyramid_levels) {}
 
@@ -120,6 +148,49 @@ Transition ReplayBuffer::Get(std::size_t position) const {
     transition.next = BuildSample(next.state.Unpack(), pyramid_levels_);
   }
   return transition;
+}
+
+std::string ReplayBuffer::Serialize() const {
+  std::string bytes;
+  AppendNumber(static_cast<std::uint64_t>(capacity_), bytes);
+  AppendNumber(static_cast<std::uint64_t>(next_), bytes);
+  AppendNumber(static_cast<std::uint64_t>(records_.size()), bytes);
+  for (const Record& record : records_) {
+    record.state.AppendTo(bytes);
+    AppendNumber(record.action, bytes);
+    AppendNumber(record.reward, bytes);
+    AppendNumber(record.done, bytes);
+    AppendNumbers(
+        std::vector<float>(record.label.data(), record.label.data() + record.label.size()), bytes);
+  }
+  return bytes;
+}
+
+void ReplayBuffer::Restore(std::string_view bytes) {
+  std::uint64_t capacity = 0;
+  std::uint64_t next = 0;
+  std::uint64_t count = 0;
+  TakeNumber(bytes, capacity);
+  TakeNumber(bytes, next);
+  TakeNumber(bytes, count);
+  if (capacity != capacity_ || count > capacity || next >= capacity) {
+    throw InputError("a replay buffer of another capacity");
+  }
+  std::vector<Record> records;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    Record record;
+    record.state = PackedGraph::TakeFrom(bytes);
+    TakeNumber(bytes, record.action);
+    TakeNumber(bytes, record.reward);
+    TakeNumber(bytes, record.done);
+    std::vector<float> label;
+    TakeNumbers(bytes, label);
+    record.label =
+        Eigen::Map<const Eigen::VectorXf>(label.data(), static_cast<Index>(label.size()));
+    records.push_back(std::move(record));
+  }
+  records_ = std::move(records);
+  next_ = static_cast<std::size_t>(next);
 }
 
 std::size_t ReplayBuffer::transitions() const {

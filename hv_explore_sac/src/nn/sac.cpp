@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "sac_sums.h"
 
@@ -54,25 +55,49 @@ SacStatistics Sac::Update(std::size_t count, const Fetch& fetch) {
 }
 
 double Sac::Imitate(std::size_t count, const Fetch& fetch) {
-  const Eigen::VectorXf sums =
-      RunBatch(count, [&](std::size_t sample, Workspaces& workspaces, Sums& into) {
-        LearnLabel(fetch(sample), workspaces, into);
-      });
+  return StepActor(RunBatch(count, [&](std::size_t sample, Workspaces& workspaces, Sums& into) {
+    LearnLabel(fetch(sample), workspaces, into);
+  }));
+}
+
+double Sac::FitPolicy(std::size_t count, const Fetch& fetch) {
+  return StepActor(RunBatch(count, [&](std::size_t sample, Workspaces& workspaces, Sums& into) {
+    const Transition transition = fetch(sample);
+    LearnPolicy(transition, transition.returns, workspaces, into);
+  }));
+}
+
+double Sac::RegressValues(std::size_t count, const Fetch& fetch) {
+  return StepCritics(RunBatch(count, [&](std::size_t sample, Workspaces& workspaces, Sums& into) {
+    const Transition transition = fetch(sample);
+    LearnValues(transition, static_cast<double>(transition.reward), workspaces, into);
+  }));
+}
+
+double Sac::FitValues(std::size_t count, const Fetch& fetch) {
+  return StepCritics(RunBatch(count, [&](std::size_t sample, Workspaces& workspaces, Sums& into) {
+    LearnReturns(fetch(sample), workspaces, into);
+  }));
+}
+
+double Sac::StepActor(const Eigen::VectorXf& sums) {
   Eigen::VectorXf gradient = sums.head(actor_.layout().size());
   actor_optimiser_.Step(gradient, actor_parameters_);
   return static_cast<double>(sums.tail(Sums::kStatistics)[Sums::kActorLoss]);
 }
 
-double Sac::RegressValues(std::size_t count, const Fetch& fetch) {
-  const Eigen::VectorXf sums =
-      RunBatch(count, [&](std::size_t sample, Workspaces& workspaces, Sums& into) {
-        const Transition transition = fetch(sample);
-        LearnValues(transition, static_cast<double>(transition.reward), workspaces, into);
-      });
+double Sac::StepCritics(const Eigen::VectorXf& sums) {
   Eigen::VectorXf gradient = sums.segment(actor_.layout().size(), critic_.layout().size());
   critic_optimiser_.Step(gradient, critic_parameters_);
   target_parameters_ = critic_parameters_;
   return static_cast<double>(sums.tail(Sums::kStatistics)[Sums::kCriticLoss]);
+}
+
+void Sac::AdoptActor(const Eigen::VectorXf& parameters) {
+  if (parameters.size() != actor_parameters_.size()) {
+    throw std::invalid_argument("the policy to adopt has another shape");
+  }
+  actor_parameters_ = parameters;
 }
 
 Eigen::VectorXf Sac::RunBatch(std::size_t count,

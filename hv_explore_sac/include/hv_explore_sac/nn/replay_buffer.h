@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <random>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "hv_explore_sac/nn/graph_sample.h"
@@ -17,6 +19,11 @@ class PackedGraph {
   explicit PackedGraph(const GraphInput& input);
   GraphInput Unpack() const;
   std::size_t bytes() const;
+
+  /// Appends itself to `bytes`, in the order of bytes of this machine.
+  void AppendTo(std::string& bytes) const;
+  /// Takes what AppendTo() wrote off the front of `bytes`. Throws InputError when it is cut short.
+  static PackedGraph TakeFrom(std::string_view& bytes);
 
  private:
   std::uint32_t nodes_ = 0;
@@ -55,6 +62,8 @@ struct Transition {
   bool done = false;
   GraphSample next;
   Eigen::VectorXf label;
+  /// What each action was measured to bring until the end; empty where that is not known.
+  Eigen::VectorXf returns;
 };
 
 /// A ring of transitions: the oldest make way. A state is kept once although it is the end of one
@@ -68,6 +77,11 @@ class ReplayBuffer {
   /// Positions of `count` transitions, uniform with replacement. Empty while there are none.
   std::vector<std::size_t> Draw(std::size_t count, std::mt19937_64& random) const;
   Transition Get(std::size_t position) const;
+
+  /// All that it holds, in the order of bytes of this machine.
+  std::string Serialize() const;
+  /// Throws InputError for what is cut short or was made with another capacity.
+  void Restore(std::string_view bytes);
 
   std::size_t states() const { return records_.size(); }
   std::size_t transitions() const;

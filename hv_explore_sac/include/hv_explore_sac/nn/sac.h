@@ -56,6 +56,16 @@ class Sac {
   /// One step of the critics alone towards rewards taken as whole returns of the actions, after
   /// which targets equal critics; gives the mean loss.
   double RegressValues(std::size_t count, const Fetch& fetch);
+  /// One step of the actor alone on J_pi with the measured `returns` in place of the critics'. It
+  /// is linear in them, so that noise of the measurements averages out over states. Gives the mean
+  /// of the loss.
+  double FitPolicy(std::size_t count, const Fetch& fetch);
+  /// One step of the critics alone towards the `returns` of all actions, after which targets equal
+  /// critics; gives the mean loss.
+  double FitValues(std::size_t count, const Fetch& fetch);
+  /// Takes over a policy of the same shape that was learned elsewhere. Throws
+  /// std::invalid_argument.
+  void AdoptActor(const Eigen::VectorXf& parameters);
   /// The present actor becomes the prior from which J_pi punishes divergence.
   void KeepPrior() { prior_ = actor_parameters_; }
 
@@ -92,6 +102,9 @@ class Sac {
                             Sums& sums) const;
   void LearnPolicy(const Transition& transition, const Matrix<float>& values,
                    Workspaces& workspaces, Sums& sums) const;
+  void LearnReturns(const Transition& transition, Workspaces& workspaces, Sums& sums) const;
+  double StepActor(const Eigen::VectorXf& sums);
+  double StepCritics(const Eigen::VectorXf& sums);
   void LearnLabel(const Transition& transition, Workspaces& workspaces, Sums& sums) const;
   Eigen::VectorXf RunBatch(std::size_t count,
                            const std::function<void(std::size_t, Workspaces&, Sums&)>& learn);

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hv_explore_sac/policy/policy_network.h"
+#include "hv_explore_sac/train/curve.h"
+#include "hv_explore_sac/train/ranks.h"
+#include "hv_explore_sac/train/train_config.h"
+#include "hv_explore_sac/train/validation.h"
+
+namespace hv::explore {
+
+/// Policy improvement by rollouts. In each round the policy so far (first the planner `utility`)
+/// explores maps; at some of its decisions every goal is tried on the true map, with that policy
+/// taking all later decisions; a new network learns which goals turned out well, and becomes the
+/// policy when it is better on maps kept aside for that. Then discrete SAC goes on from the best
+/// policy.
+///
+/// The folder holds policy.bin (the best so far, as the planner `sac` takes it), curve.csv, and
+/// what Resume() goes on from: state.bin, labels_<round>_<rank>.bin, sac.bin, replay_<rank>.bin.
+/// What comes out is then the same as without the break. Not thread-safe; uses TBB's threads.
+class Trainer {
+ public:
+  /// What is being done, for a progress line.
+  using Report = std::function<void(const std::string& what, double share)>;
+
+  /// The maps must outlive it.
+  Trainer(const TrainConfig& config, const std::vector<ExplorationMap>& maps, std::string folder,
+          Ranks& ranks, Report report);
+
+  /// Goes on from the folder's last finished round, or the last time that SAC's policy was tried.
+  /// Throws InputError when there is none.
+  void Resume();
+  /// All that is left.
+  void Run();
+
+  const std::vector<CurvePoint>& curve() const { return curve_; }
+  /// Travel of the best policy on the maps for validation, as a share of `utility`'s.
+  double best_share() const { return best_travel_ / utility_travel_; }
+  /// The best policy, null while none is better than `utility`.
+  const std::shared_ptr<const PolicyNetwork>& best() const { return best_; }
+
+ private:
+  void Begin();
+  void RunRound();
+  Rollout RolloutOf(std::shared_ptr<const PolicyNetwork> network) const;
+  void CollectLabels();
+  std::vector<LabelledState> Label(const std::vector<const ExplorationMap*>& maps,
+                                   std::uint64_t seed, const std::string& path) const;
+  std::shared_ptr<const PolicyNetwork> Learn();
+  void FineTune();
+  std::unique_ptr<FineTuner> MakeFineTuner();
+  void Judge(std::shared_ptr<const PolicyNetwork> candidate);
+  void Save() const;
+  std::string PathOf(const std::string& name) const { return folder_ + "/" + name; }
+  std::string RankPath(const std::string& name) const;
+  std::uint64_t Seed(std::uint64_t purpose) const;
+
+  TrainConfig config_;
+  RaySensor sensor_;
+  std::string folder_;
+  Ranks& ranks_;
+  Report report_;
+  std::vector<const ExplorationMap*> training_;
+  std::vector<const ExplorationMap*> validation_;
+  int round_ = 0;
+  int cycle_ = 0;                ///< of SAC
+  double utility_travel_ = 0.0;  ///< on the maps for validation [cells]
+  double best_travel_ = 0.0;
+  std::shared_ptr<const PolicyNetwork> best_;
+  std::vector<LabelledState> labels_;  ///< of the kept rounds
+  std::vector<LabelledState> gauge_;   ///< of the present round on maps for validation
+  std::vector<CurvePoint> curve_;
+};
+
+}  // namespace hv::explore

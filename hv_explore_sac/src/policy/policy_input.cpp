@@ -1,0 +1,190 @@
+#include "hv_explore_sac/policy/policy_input.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hv::explore {
+namespace {
+
+// Scales that bring features to size about one [cells, frontier points].
+constexpr float kWay = 200.0F;
+constexpr float kNeighborWay = 22.0F;
+constexpr float kView = 70.0F;
+constexpr float kPoints = 50.0F;
+/// Beyond this logarithms and ratios are all the same.
+constexpr float kMost = 3.0F;
+/// Half edges of the squares in which the unknown is counted [cells].
+constexpr float kNear = 24.0F;
+constexpr float kWide = 56.0F;
+constexpr float kFar = 112.0F;
+/// How quickly goals matter less to each other with the way between them [1/cells].
+constexpr float kAroundDecay = 0.02F;
+
+/// Distance to the nearest border, negative outside [cells].
+float BorderDistance(const Belief& belief, const Eigen::Vector2f& cell) {
+  const float x = std::min(cell.x(), static_cast<float>(belief.width()) - cell.x());
+  const float y = std::min(cell.y(), static_cast<float>(belief.height()) - cell.y());
+  return std::min(x, y);
+}
+
+void TransformVectors(int symmetry, int vectors, nn::Matrix<float>& matrix) {
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (int v = 0; v < vectors; ++v) {
+      float& x = matrix(i, 2 * v);
+      float& y = matrix(i, 2 * v + 1);
+      if ((symmetry & 1) != 0) x = -x;
+      if ((symmetry & 2) != 0) y = -y;
+      if ((symmetry & 4) != 0) std::swap(x, y);
+    }
+  }
+}
+
+}  // namespace
+
+void PolicyInput::Build(const Observation& observation, const ExplorationModel& model,
+                        const std::optional<Eigen::Vector2i>& kept, nn::GraphInput& input) {
+  goals_ = &selector_.Select(observation, model);
+  tours_.Plan(observation, model, *goals_);
+  unknown_.Count(model.belief());
+  ChooseNodes(observation);
+  const auto count = static_cast<Eigen::Index>(nodes_.size());
+  input.features.setZero(count, kFeatures);
+  input.positions.resize(count, 2);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const int node = nodes_[static_cast<std::size_t>(i)];
+    DescribeNode(observation, model, node, input.features.row(i));
+    input.positions.row(i) = observation.node(node).position.transpose() / kNeighborWay;
+  }
+  input.actions.clear();
+  for (int goal = 0; goal < static_cast<int>(goals_->size()); ++goal) {
+    const int row = goal + 1;
+    DescribeGoal(model, goal, input.features.row(row));
+    const int viewpoint = observation.node(nodes_[static_cast<std::size_t>(row)]).viewpoint;
+    input.features(row, kIsKept) = model.graph().CellOf(viewpoint) == kept ? 1.0F : 0.0F;
+    input.actions.push_back(row);
+  }
+  input.current = 0;
+  JoinNodes(observation, input);
+  DescribeState(observation, input);
+  const std::vector<int>& history = observation.history;
+  const std::size_t window = std::min(kHistory, history.size());
+  input.history.setZero(static_cast<Eigen::Index>(window), kFeatures);
+  for (std::size_t i = 0; i < window; ++i) {
+    DescribeNode(observation, model, history[history.size() - window + i],
+                 input.history.row(static_cast<Eigen::Index>(i)));
+  }
+}
+
+void PolicyInput::ChooseNodes(const Observation& observation) {
+  nodes_.assign(1, Observation::kRobot);
+  index_of_.assign(observation.nodes.size(), -1);
+  index_of_[Observation::kRobot] = 0;
+  for (const Goal& goal : *goals_) {
+    index_of_[static_cast<std::size_t>(goal.node)] = static_cast<int>(nodes_.size());
+    nodes_.push_back(goal.node);
+  }
+  if (!config_.ways) return;
+  for (const Goal& goal : *goals_) {
+    for (int at = observation.node(goal.node).predecessor; at >= 0;
+         at = observation.node(at).predecessor) {
+      int& index = index_of_[static_cast<std::size_t>(at)];
+      if (index >= 0) continue;
+      index = static_cast<int>(nodes_.size());
+      nodes_.push_back(at);
+    }
+  }
+}
+
+void PolicyInput::JoinNodes(const Observation& observation, nn::GraphInput& input) const {
+  const auto core = static_cast<int>(goals_->size()) + 1;
+  input.start.assign(1, 0);
+  input.neighbour.clear();
+  for (int i = 0; i < static_cast<int>(nodes_.size()); ++i) {
+    for (int j = 0; i < core && j < core; ++j) {
+      if (j != i) input.neighbour.push_back(j);
+    }
+    for (const Observation::Edge& edge : observation.EdgesOf(nodes_[static_cast<std::size_t>(i)])) {
+      const int j = index_of_[static_cast<std::size_t>(edge.to)];
+      if (j >= 0 && (i >= core || j >= core)) input.neighbour.push_back(j);
+    }
+    input.start.push_back(static_cast<std::int32_t>(input.neighbour.size()));
+  }
+}
+
+void PolicyInput::DescribeNode(const Observation& observation, const ExplorationModel& model,
+                               int node, Row row) const {
+  const Observation::Node& of = observation.node(node);
+  row[kPositionX] = of.position.x() / kWay;
+  row[kPositionY] = of.position.y() / kWay;
+  row[kIsRobot] = node == Observation::kRobot ? 1.0F : 0.0F;
+  row[kVisited] = of.visited ? 1.0F : 0.0F;
+  row[kUtility] = static_cast<float>(of.utility) / kPoints;
+  row[kLogUtility] = std::log1p(static_cast<float>(of.utility)) / kMost;
+  row[kDistance] = of.distance / kWay;
+  row[kStraightDistance] = of.position.norm() / kWay;
+  DescribeUnknown(model, of.position, of.position, row);
+}
+
+void PolicyInput::DescribeGoal(const ExplorationModel& model, int goal, Row row) const {
+  const Goal& of = (*goals_)[static_cast<std::size_t>(goal)];
+  const Eigen::Vector2f node(row[kPositionX] * kWay, row[kPositionY] * kWay);
+  row[kFrontierX] = (of.frontier - node).x() / kView;
+  row[kFrontierY] = (of.frontier - node).y() / kView;
+  row[kIsGoal] = 1.0F;
+  row[kFresh] = static_cast<float>(of.fresh) / kPoints;
+  row[kRank] = std::max(of.rank - goals_->front().rank, -kMost);
+  DescribeUnknown(model, node, of.frontier, row);
+  float nearest = kMost * kWay;
+  float sum = 0.0F;
+  float around = 0.0F;
+  float least_length = tours_.LengthVia(goal);
+  float most_gain = tours_.GainVia(goal);
+  for (int other = 0; other < tours_.size(); ++other) {
+    least_length = std::min(least_length, tours_.LengthVia(other));
+    most_gain = std::max(most_gain, tours_.GainVia(other));
+    if (other == goal) continue;
+    const float way = tours_.Between(goal, other);
+    nearest = std::min(nearest, way);
+    sum += way;
+    around += static_cast<float>((*goals_)[static_cast<std::size_t>(other)].fresh) *
+              std::exp(-kAroundDecay * way);
+  }
+  row[kNearestGoal] = nearest / kWay;
+  row[kMeanGoal] = sum / (kWay * static_cast<float>(std::max(1, tours_.size() - 1)));
+  row[kGoalsAround] = around / kPoints;
+  row[kTourExcess] = std::min((tours_.LengthVia(goal) - least_length) / kWay, kMost);
+  row[kTourGain] = std::max(std::log(tours_.GainVia(goal) / most_gain), -kMost);
+}
+
+void PolicyInput::DescribeUnknown(const ExplorationModel& model, const Eigen::Vector2f& node,
+                                  const Eigen::Vector2f& place, Row row) const {
+  const Eigen::Vector2f cell = place + model.graph().CellOf(model.robot()).cast<float>();
+  const Eigen::Vector2f ahead = (place - node).normalized();
+  row[kUnknownNear] = unknown_.Around(cell, kNear);
+  row[kUnknownWide] = unknown_.Around(cell, kWide);
+  row[kUnknownFar] = unknown_.Around(cell, kFar);
+  row[kUnknownAhead] = unknown_.Around(cell + kWide * ahead, kWide);
+  row[kUnknownFarAhead] = unknown_.Around(cell + kFar * ahead, kFar);
+  row[kBorder] = std::min(BorderDistance(model.belief(), cell) / kFar, kMost);
+}
+
+void PolicyInput::DescribeState(const Observation& observation, nn::GraphInput& input) const {
+  float shortest = tours_.LengthVia(0);
+  float points = 0.0F;
+  for (int goal = 0; goal < tours_.size(); ++goal) {
+    shortest = std::min(shortest, tours_.LengthVia(goal));
+    points += static_cast<float>((*goals_)[static_cast<std::size_t>(goal)].fresh);
+  }
+  input.globals.resize(kGlobals);
+  input.globals << unknown_.Everywhere(), static_cast<float>(observation.explored) / 1e5F,
+      static_cast<float>(tours_.size()) / static_cast<float>(GoalTours::kMostGoals),
+      points / (4.0F * kPoints), shortest / (4.0F * kWay), goals_->front().rank / kMost;
+}
+
+void Transform(int symmetry, nn::GraphInput& input) {
+  TransformVectors(symmetry, PolicyInput::kVectors, input.features);
+  TransformVectors(symmetry, PolicyInput::kVectors, input.history);
+  TransformVectors(symmetry, 1, input.positions);
+}
+
+}  // namespace hv::explore

@@ -1,0 +1,113 @@
+#include "hv_explore_sac/train/labels.h"
+
+#include <atomic>
+#include <optional>
+#include <random>
+
+#include <tbb/parallel_for.h>
+
+#include "hv_explore_sac/policy/policy_input.h"
+#include "uniform.h"
+
+namespace hv::explore {
+namespace {
+
+/// One run on a map with measurements on the way.
+class LabelRun {
+ public:
+  LabelRun(const ExplorationMap& map, const LabelInputs& inputs, std::uint64_t seed)
+      : inputs_(inputs),
+        environment_(inputs.exploration, RewardConfig(), *inputs.sensor, map,
+                     std::make_shared<SightMemory>(*inputs.sensor, map)),
+        planner_(inputs.rollout->MakePlanner(map)),
+        builder_(inputs.policy),
+        random_(seed) {}
+
+  std::vector<LabelledState> Run() {
+    while (environment_.ending() == Ending::kRunning) {
+      environment_.Observe(observation_);
+      builder_.Build(observation_, environment_.model(), kept_, input_);
+      if (Uniform(random_) < inputs_.labels.share && builder_.goals().size() > 1) Measure();
+      if (Uniform(random_) < inputs_.labels.wander) Wander();
+      if (wish_ && StepTowards(environment_, *wish_)) continue;
+      wish_.reset();
+      Follow();
+    }
+    return std::move(labels_);
+  }
+
+ private:
+  Eigen::Vector2i CellOf(int node) const {
+    return environment_.model().graph().CellOf(observation_.node(node).viewpoint);
+  }
+
+  void Measure() {
+    Eigen::VectorXf returns(static_cast<Eigen::Index>(builder_.goals().size()));
+    for (Eigen::Index i = 0; i < returns.size(); ++i) {
+      const Goal& goal = builder_.goals()[static_cast<std::size_t>(i)];
+      const double travel = inputs_.rollout->TravelVia(environment_, CellOf(goal.node));
+      returns[i] = static_cast<float>(-travel / inputs_.labels.length_scale);
+    }
+    labels_.push_back({nn::PackedGraph(input_), returns});
+  }
+
+  void Wander() {
+    const std::vector<Goal>& goals = builder_.goals();
+    wish_ = CellOf(goals[random_() % goals.size()].node);
+    kept_ = wish_;
+  }
+
+  void Follow() {
+    const Decision decision = planner_->Choose(observation_, environment_.model());
+    kept_ = CellOf(decision.goal);
+    environment_.Step(observation_.node(decision.action).viewpoint);
+  }
+
+  const LabelInputs& inputs_;
+  DungeonEnvironment environment_;
+  std::unique_ptr<Planner> planner_;
+  PolicyInput builder_;
+  std::mt19937_64 random_;
+  Observation observation_;
+  nn::GraphInput input_;
+  std::optional<Eigen::Vector2i> kept_;  ///< the goal that the robot has: a cell
+  std::optional<Eigen::Vector2i> wish_;  ///< while it wanders
+  std::vector<LabelledState> labels_;
+};
+
+}  // namespace
+
+void LabelConfig::Describe(ConfigVisitor& visitor) {
+  visitor.Field("share", share, "of the decisions of a run whose goals are measured");
+  visitor.Field("wander", wander, "share of the decisions at which any goal is driven to instead");
+  visitor.Field("length_scale", length_scale, "way that costs a return of one [cells]");
+}
+
+void LabelConfig::Validate(ConfigProblems& problems) const {
+  problems.Require(share > 0.0 && share <= 1.0, "labels.share", "must be above 0 and at most 1");
+  problems.Require(wander >= 0.0 && wander < 1.0, "labels.wander", "must be within 0 and 1");
+  problems.Require(length_scale > 0.0, "labels.length_scale", "must be positive");
+}
+
+std::vector<LabelledState> LabelMap(const ExplorationMap& map, const LabelInputs& inputs,
+                                    std::uint64_t seed) {
+  return LabelRun(map, inputs, seed).Run();
+}
+
+std::vector<LabelledState> LabelMaps(const std::vector<const ExplorationMap*>& maps,
+                                     const LabelInputs& inputs, std::uint64_t seed,
+                                     const std::function<void(double)>& report) {
+  std::vector<std::vector<LabelledState>> parts(maps.size());
+  std::atomic<std::size_t> done{0};
+  tbb::parallel_for(std::size_t{0}, maps.size(), [&](std::size_t i) {
+    parts[i] = LabelMap(*maps[i], inputs, seed + i);
+    report(static_cast<double>(++done) / static_cast<double>(maps.size()));
+  });
+  std::vector<LabelledState> labels;
+  for (std::vector<LabelledState>& part : parts) {
+    std::move(part.begin(), part.end(), std::back_inserter(labels));
+  }
+  return labels;
+}
+
+}  // namespace hv::explore

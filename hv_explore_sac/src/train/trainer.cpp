@@ -1,0 +1,226 @@
+#include "hv_explore_sac/train/trainer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "hv_core/error.h"
+#include "hv_explore_sac/policy/policy_planner.h"
+#include "hv_explore_sac/train/policy_fit.h"
+
+namespace hv::explore {
+namespace {
+
+/// Points of the curve in a round.
+constexpr int kPoints = 10;
+/// Maps for validation on which labels are made as well.
+constexpr std::size_t kGaugeMaps = 60;
+
+std::string LabelName(int round) { return "labels_" + std::to_string(round + 1); }
+
+/// What random numbers are for; each purpose in each round has its own.
+enum Purpose : std::uint64_t { kLabels, kGauge, kFit, kFirstEpisodes, kEpisodes, kPurposes };
+
+constexpr std::uint64_t kSeedStep = 1U << 24U;  // more than there are maps, or episodes of SAC
+constexpr std::uint64_t kCycleStep = 1000;      // more than there are episodes in a cycle
+
+}  // namespace
+
+Trainer::Trainer(const TrainConfig& config, const std::vector<ExplorationMap>& maps,
+                 std::string folder, Ranks& ranks, Report report)
+    : config_(config),
+      sensor_(config.exploration.simulation),
+      folder_(std::move(folder)),
+      ranks_(ranks),
+      report_(std::move(report)) {
+  const auto held_out = static_cast<std::size_t>(config.split.held_out);
+  const auto validation = static_cast<std::size_t>(config.split.validation);
+  if (maps.size() <= held_out + validation) {
+    throw InputError("there are " + std::to_string(maps.size()) +
+                     " maps, and `split` leaves none of them to learn from");
+  }
+  const std::size_t last = maps.size() - held_out;
+  for (std::size_t i = 0; i < last; ++i) {
+    (i < last - validation ? training_ : validation_).push_back(&maps[i]);
+  }
+  std::filesystem::create_directories(folder_);
+}
+
+void Trainer::Run() {
+  if (utility_travel_ == 0.0) Begin();
+  while (round_ < config_.improvement.rounds) {
+    RunRound();
+    ++round_;
+    Save();
+  }
+  if (cycle_ < config_.fine_tune.cycles) FineTune();
+}
+
+void Trainer::Begin() {
+  report_("utility on the maps for validation", 0.0);
+  utility_travel_ =
+      Validate(validation_, config_.exploration, sensor_, RolloutOf(nullptr), ranks_).travel;
+  best_travel_ = utility_travel_;
+}
+
+void Trainer::RunRound() {
+  CollectLabels();
+  Judge(Learn());
+}
+
+Rollout Trainer::RolloutOf(std::shared_ptr<const PolicyNetwork> network) const {
+  if (network != nullptr) {
+    return Rollout(
+        [network](const ExplorationMap&) { return std::make_unique<PolicyPlanner>(network); },
+        config_.guard);
+  }
+  return Rollout(
+      [this](const ExplorationMap& map) {
+        return MakePlanner("utility", {config_.planner, config_.exploration, &sensor_, &map});
+      },
+      config_.guard);
+}
+
+void Trainer::CollectLabels() {
+  Label(ShareOf(training_, ranks_), Seed(kLabels), RankPath(LabelName(round_)));
+  std::vector<const ExplorationMap*> few = validation_;
+  few.resize(std::min(few.size(), kGaugeMaps));
+  gauge_ = Label(few, Seed(kGauge), RankPath("gauge"));
+  labels_.clear();
+  for (int round = std::max(0, round_ + 1 - config_.improvement.kept_rounds); round <= round_;
+       ++round) {
+    std::vector<LabelledState> more = ReadLabels(RankPath(LabelName(round)));
+    std::move(more.begin(), more.end(), std::back_inserter(labels_));
+  }
+}
+
+std::vector<LabelledState> Trainer::Label(const std::vector<const ExplorationMap*>& maps,
+                                          std::uint64_t seed, const std::string& path) const {
+  const Rollout rollout = RolloutOf(best_);
+  LabelInputs inputs{config_.exploration, config_.policy, config_.labels, &sensor_, &rollout};
+  std::vector<LabelledState> labels = LabelMaps(maps, inputs, seed, [this](double share) {
+    report_("round " + std::to_string(round_ + 1) + ": measuring", share);
+  });
+  WriteLabels(labels, path);
+  return labels;
+}
+
+std::shared_ptr<const PolicyNetwork> Trainer::Learn() {
+  const ImprovementConfig& improvement = config_.improvement;
+  nn::SacConfig learning = config_.sac;
+  learning.seed += round_;
+  learning.actor_optimiser.decay_steps = improvement.updates;
+  nn::Sac sac(learning, PolicyNetwork::Shape(), PolicyInput::kGlobals);
+  Reduce(ranks_, sac);
+  const int levels = learning.actor.pyramid_levels;
+  const int batch = std::max(1, improvement.batch / ranks_.size());
+  int done = 0;
+  for (int point = 1; point <= kPoints; ++point) {
+    const int count = improvement.updates * point / kPoints - done;
+    CurvePoint now;
+    now.loss = FitPolicy(labels_, count, static_cast<std::size_t>(batch), levels,
+                         Seed(kFit) + static_cast<std::uint64_t>(point), sac);
+    done += count;
+    now.round = round_ + 1;
+    now.updates = round_ * improvement.updates + done;
+    now.states = static_cast<int>(labels_.size());
+    now.gain = config_.labels.length_scale * MeanGain(gauge_, levels, sac);
+    now.travel = now.share = std::numeric_limits<double>::quiet_NaN();
+    curve_.push_back(now);
+    report_("round " + std::to_string(round_ + 1) + ": learning",
+            static_cast<double>(point) / kPoints);
+  }
+  return std::make_shared<PolicyNetwork>(PolicySettings{config_.policy, learning.actor},
+                                         sac.actor_parameters());
+}
+
+std::unique_ptr<FineTuner> Trainer::MakeFineTuner() {
+  const EpisodeInputs inputs{config_.exploration, config_.policy, config_.reward, &sensor_};
+  auto tuner =
+      std::make_unique<FineTuner>(config_.fine_tune, inputs, config_.sac, training_, ranks_);
+  if (cycle_ > 0) {
+    tuner->Load(PathOf("sac.bin"), RankPath("replay"));
+    return tuner;
+  }
+  report_("SAC: first episodes and values", 0.0);
+  tuner->Begin(best_->parameters(), Seed(kFirstEpisodes));
+  return tuner;
+}
+
+void Trainer::FineTune() {
+  if (best_ == nullptr) return;
+  const std::unique_ptr<FineTuner> tuner = MakeFineTuner();
+  const FineTuneConfig& config = config_.fine_tune;
+  while (cycle_ < config.cycles) {
+    CurvePoint now;
+    now.round = config_.improvement.rounds + 1;
+    const int next = std::min(config.cycles, cycle_ + config.judge_every);
+    for (; cycle_ < next; ++cycle_) {
+      report_("SAC", static_cast<double>(cycle_) / config.cycles);
+      now.loss = tuner->Cycle(Seed(kEpisodes) + static_cast<std::uint64_t>(cycle_) * kCycleStep)
+                     .critic_loss;
+    }
+    now.updates =
+        config_.improvement.rounds * config_.improvement.updates + cycle_ * config.updates;
+    now.states = static_cast<int>(tuner->states());
+    now.gain = std::numeric_limits<double>::quiet_NaN();
+    curve_.push_back(now);
+    Judge(std::make_shared<PolicyNetwork>(PolicySettings{config_.policy, config_.sac.actor},
+                                          tuner->sac().actor_parameters()));
+    tuner->Save(PathOf("sac.bin"), RankPath("replay"));
+    Save();
+  }
+}
+
+void Trainer::Judge(std::shared_ptr<const PolicyNetwork> candidate) {
+  report_("trying", 0.0);
+  const double travel =
+      Validate(validation_, config_.exploration, sensor_, RolloutOf(candidate), ranks_).travel;
+  curve_.back().travel = travel;
+  curve_.back().share = travel / utility_travel_;
+  if (travel >= best_travel_) return;
+  best_travel_ = travel;
+  best_ = std::move(candidate);
+}
+
+void Trainer::Save() const {
+  if (ranks_.rank() != 0) return;
+  if (best_ != nullptr) best_->ToCheckpoint().Write(PathOf("policy.bin"));
+  WriteCurve(curve_, PathOf("curve.csv"));
+  nn::Checkpoint state;
+  state.text = ToYaml(config_);
+  state.PutNumber("round", round_);
+  state.PutNumber("cycle", cycle_);
+  state.PutNumber("utility_travel", utility_travel_);
+  state.PutNumber("best_travel", best_travel_);
+  state.Write(PathOf("state.bin"));
+}
+
+void Trainer::Resume() {
+  const nn::Checkpoint state = nn::Checkpoint::Read(PathOf("state.bin"));
+  if (state.text != ToYaml(config_)) {
+    throw InputError(PathOf("state.bin") + ": was made with another configuration");
+  }
+  round_ = static_cast<int>(state.Number("round"));
+  cycle_ = static_cast<int>(state.Number("cycle"));
+  utility_travel_ = state.Number("utility_travel");
+  best_travel_ = state.Number("best_travel");
+  if (best_travel_ < utility_travel_) best_ = PolicyNetwork::Read(PathOf("policy.bin"));
+  curve_ = ReadCurve(PathOf("curve.csv"));
+}
+
+std::string Trainer::RankPath(const std::string& name) const {
+  return PathOf(name + "_" + std::to_string(ranks_.rank()) + ".bin");
+}
+
+std::uint64_t Trainer::Seed(std::uint64_t purpose) const {
+  const auto round = static_cast<std::uint64_t>(round_);
+  const auto size = static_cast<std::uint64_t>(ranks_.size());
+  const std::uint64_t stream =
+      (round * kPurposes + purpose) * size + static_cast<std::uint64_t>(ranks_.rank());
+  return static_cast<std::uint64_t>(config_.sac.seed) * 1000003U + stream * kSeedStep;
+}
+
+}  // namespace hv::explore

@@ -1,0 +1,107 @@
+#include "hv_explore_sac/train/labels.h"
+
+#include <gtest/gtest.h>
+
+#include "hv_core/error.h"
+#include "hv_explore_sac/policy/policy_input.h"
+#include "policy/random_states.h"
+
+namespace hv::explore {
+namespace {
+
+Rollout UtilityRollout() {
+  return Rollout([](const ExplorationMap&) { return MakePlanner("utility", PlannerInputs()); },
+                 GuardConfig());
+}
+
+/// What is left to drive when the goal comes first, done again step by step with the public parts.
+double DrivenVia(const RandomState& state, const Eigen::Vector2i& goal) {
+  DungeonEnvironment environment(state.environment);
+  Observation observation;
+  bool underway = true;
+  const auto planner = MakePlanner("utility", PlannerInputs());
+  while (environment.ending() == Ending::kRunning) {
+    environment.Observe(observation);
+    int wanted = -1;
+    for (int i = 0; i < observation.size(); ++i) {
+      const Observation::Node& node = observation.node(i);
+      if (environment.model().graph().CellOf(node.viewpoint) == goal && node.utility > 0)
+        wanted = i;
+    }
+    underway = underway && wanted >= 0;
+    const int action = underway ? observation.FirstHopTo(wanted)
+                                : planner->Choose(observation, environment.model()).action;
+    environment.Step(observation.node(action).viewpoint);
+  }
+  return environment.travel() - state.environment.travel();
+}
+
+TEST(RolloutTest, DrivesToTheGoalAndThenAsThePlannerDecides) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const RandomState state(seed, 3);
+    if (!state.running()) continue;
+    const double travel = state.environment.travel();
+    GoalSelector selector{PolicyConfig()};
+    for (const Goal& goal : selector.Select(state.observation, state.environment.model())) {
+      const Eigen::Vector2i cell =
+          state.environment.model().graph().CellOf(state.observation.node(goal.node).viewpoint);
+      EXPECT_DOUBLE_EQ(UtilityRollout().TravelVia(state.environment, cell), DrivenVia(state, cell));
+    }
+    EXPECT_EQ(state.environment.travel(), travel);
+  }
+}
+
+class Labels : public testing::Test {
+ protected:
+  Labels() : rollout_(UtilityRollout()), sensor_(ExplorationConfig().simulation) {
+    for (unsigned seed = 1; seed <= 3; ++seed) maps_.push_back(RandomMap(seed));
+    inputs_.labels.share = 0.3;
+    inputs_.sensor = &sensor_;
+    inputs_.rollout = &rollout_;
+  }
+
+  Rollout rollout_;
+  RaySensor sensor_;
+  std::vector<ExplorationMap> maps_;
+  LabelInputs inputs_;
+};
+
+TEST_F(Labels, HaveAReturnForEachGoalAndNoneIsFree) {
+  for (const ExplorationMap& map : maps_) {
+    for (const LabelledState& label : LabelMap(map, inputs_, 7)) {
+      const nn::GraphInput input = label.state.Unpack();
+      EXPECT_EQ(static_cast<std::size_t>(label.returns.size()), input.actions.size());
+      for (Eigen::Index i = 0; i < label.returns.size(); ++i) {
+        EXPECT_LT(label.returns[i], 0.0F);
+      }
+    }
+  }
+}
+
+TEST_F(Labels, OfManyMapsAreThoseOfEachInOrder) {
+  std::vector<const ExplorationMap*> maps;
+  std::vector<LabelledState> alone;
+  for (std::size_t i = 0; i < maps_.size(); ++i) {
+    maps.push_back(&maps_[i]);
+    for (LabelledState& label : LabelMap(maps_[i], inputs_, 10 + i)) alone.push_back(label);
+  }
+  const std::vector<LabelledState> all = LabelMaps(maps, inputs_, 10, [](double) {});
+  ASSERT_EQ(all.size(), alone.size());
+  for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].returns, alone[i].returns);
+}
+
+TEST_F(Labels, SurviveTheirFile) {
+  const std::vector<LabelledState> labels = LabelMap(maps_[0], inputs_, 1);
+  const std::string path = testing::TempDir() + "labels.bin";
+  WriteLabels(labels, path);
+  const std::vector<LabelledState> read = ReadLabels(path);
+  ASSERT_EQ(read.size(), labels.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read[i].returns, labels[i].returns);
+    EXPECT_EQ(read[i].state.Unpack().features, labels[i].state.Unpack().features);
+    EXPECT_EQ(read[i].state.Unpack().neighbour, labels[i].state.Unpack().neighbour);
+  }
+}
+
+}  // namespace
+}  // namespace hv::explore

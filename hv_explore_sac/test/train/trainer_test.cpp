@@ -1,0 +1,95 @@
+#include "hv_explore_sac/train/trainer.h"
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "hv_core/error.h"
+#include "random_maps.h"
+
+namespace hv::explore {
+namespace {
+
+class TrainerTest : public testing::Test {
+ protected:
+  TrainerTest() {
+    for (unsigned seed = 1; seed <= 5; ++seed) maps_.push_back(RandomMap(seed));
+    config_.split.held_out = 1;
+    config_.split.validation = 1;
+    config_.labels.share = 0.2;
+    config_.improvement.rounds = 2;
+    config_.improvement.updates = 20;
+    config_.improvement.batch = 8;
+    nn::NetworkConfig& network = config_.sac.actor;
+    network.width = 8;
+    network.heads = 2;
+    network.feed_forward = 8;
+    network.encoder_layers = 1;
+    network.pyramid_levels = 0;
+    network.memory = 0;
+    config_.sac.critic = network;
+  }
+
+  std::string Folder(const std::string& name) const {
+    const std::string folder = testing::TempDir() + "trainer_" + name;
+    std::filesystem::remove_all(folder);
+    return folder;
+  }
+  Trainer Make(const std::string& folder, const Trainer::Report& report) {
+    return Trainer(config_, maps_, folder, ranks_, report);
+  }
+
+  std::vector<ExplorationMap> maps_;
+  TrainConfig config_;
+  Ranks ranks_;
+};
+
+void ExpectSame(double a, double b) {
+  if (std::isnan(a)) {
+    EXPECT_TRUE(std::isnan(b));
+  } else {
+    EXPECT_FLOAT_EQ(static_cast<float>(a), static_cast<float>(b));
+  }
+}
+
+TEST_F(TrainerTest, AnInterruptedTrainingComesOutTheSame) {
+  const auto quiet = [](const std::string&, double) {};
+  Trainer whole = Make(Folder("whole"), quiet);
+  whole.Run();
+
+  const std::string folder = Folder("broken");
+  Trainer broken = Make(folder, [](const std::string& what, double) {
+    if (what == "round 2: learning") throw std::runtime_error("switched off");
+  });
+  EXPECT_THROW(broken.Run(), std::runtime_error);
+  Trainer resumed = Make(folder, quiet);
+  resumed.Resume();
+  resumed.Run();
+
+  ASSERT_EQ(resumed.curve().size(), whole.curve().size());
+  for (std::size_t i = 0; i < whole.curve().size(); ++i) {
+    ExpectSame(whole.curve()[i].loss, resumed.curve()[i].loss);
+    ExpectSame(whole.curve()[i].gain, resumed.curve()[i].gain);
+    ExpectSame(whole.curve()[i].travel, resumed.curve()[i].travel);
+  }
+}
+
+TEST_F(TrainerTest, GoesOnWithTheSameConfigurationOnly) {
+  const auto quiet = [](const std::string&, double) {};
+  const std::string folder = Folder("other");
+  EXPECT_THROW(Make(folder, quiet).Resume(), InputError);
+  config_.improvement.rounds = 1;
+  Make(folder, quiet).Run();
+  config_.labels.wander = 0.5;
+  EXPECT_THROW(Make(folder, quiet).Resume(), InputError);
+}
+
+TEST_F(TrainerTest, NeedsMapsToLearnFrom) {
+  config_.split.held_out = 4;
+  EXPECT_THROW(Make(Folder("none"), [](const std::string&, double) {}), InputError);
+}
+
+}  // namespace
+}  // namespace hv::explore
