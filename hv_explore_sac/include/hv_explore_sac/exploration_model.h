@@ -1,7 +1,7 @@
 #pragma once
 
 #include <deque>
-#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -26,7 +26,7 @@ class ExplorationModel {
   /// From now on viewpoints and edges lie where another belief of the same cells is free: where a
   /// robot that has a size may stand; what is joined over its cells is joined by edges too. What is
   /// seen still follows from `belief()`.
-  void SetGround(Belief ground) { ground_ = std::make_unique<Belief>(std::move(ground)); }
+  void SetGround(Belief ground) { ground_ = std::move(ground); }
   const Belief& ground() const { return ground_ ? *ground_ : belief_; }
 
   Belief& belief() { return belief_; }
@@ -59,7 +59,7 @@ class ExplorationModel {
 
   ExplorationConfig config_;
   Belief belief_;
-  std::unique_ptr<Belief> ground_;  ///< null: all that is free
+  std::optional<Belief> ground_;  ///< without: all that is free
   Frontiers frontiers_;
   ViewpointGraph graph_;
   FrontierViews views_;
