@@ -20,7 +20,7 @@ constexpr float kFar = 112.0F;
 /// How quickly goals matter less to each other with the way between them [1/cells].
 constexpr float kAroundDecay = 0.02F;
 
-/// Distance to the nearest border, negative outside [cells].
+/// Distance to the nearest border of a place from the lowest cell on, negative outside [cells].
 float BorderDistance(const Belief& belief, const Eigen::Vector2f& cell) {
   const float x = std::min(cell.x(), static_cast<float>(belief.width()) - cell.x());
   const float y = std::min(cell.y(), static_cast<float>(belief.height()) - cell.y());
@@ -158,7 +158,8 @@ void PolicyInput::DescribeGoal(const ExplorationModel& model, int goal, Row row)
 
 void PolicyInput::DescribeUnknown(const ExplorationModel& model, const Eigen::Vector2f& node,
                                   const Eigen::Vector2f& place, Row row) const {
-  const Eigen::Vector2f cell = place + model.graph().CellOf(model.robot()).cast<float>();
+  const Eigen::Vector2i robot = model.graph().CellOf(model.robot()) - model.belief().low();
+  const Eigen::Vector2f cell = place + robot.cast<float>();
   const Eigen::Vector2f ahead = (place - node).normalized();
   row[kUnknownNear] = unknown_.Around(cell, kNear);
   row[kUnknownWide] = unknown_.Around(cell, kWide);
