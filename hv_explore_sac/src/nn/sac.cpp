@@ -74,12 +74,6 @@ double Sac::RegressValues(std::size_t count, const Fetch& fetch) {
   }));
 }
 
-double Sac::FitValues(std::size_t count, const Fetch& fetch) {
-  return StepCritics(RunBatch(count, [&](std::size_t sample, Workspaces& workspaces, Sums& into) {
-    LearnReturns(fetch(sample), workspaces, into);
-  }));
-}
-
 double Sac::StepActor(const Eigen::VectorXf& sums) {
   Eigen::VectorXf gradient = sums.head(actor_.layout().size());
   actor_optimiser_.Step(gradient, actor_parameters_);

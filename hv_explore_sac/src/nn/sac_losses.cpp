@@ -65,16 +65,6 @@ void Sac::LearnPolicy(const Transition& transition, const Matrix<float>& values,
                   sums.actor);
 }
 
-void Sac::LearnReturns(const Transition& transition, Workspaces& workspaces, Sums& sums) const {
-  const View<float> values =
-      critic_.Forward(critic_parameters_.data(), transition.state, workspaces.critic);
-  Matrix<float> d_values = values.matrix().colwise() - transition.returns;
-  d_values /= static_cast<float>(values.rows);
-  sums.Note(Sums::kCriticLoss, 0.5F * static_cast<float>(values.rows) * d_values.squaredNorm());
-  critic_.Backward(critic_parameters_.data(), {d_values.data(), values.rows, values.cols},
-                   workspaces.critic, sums.critic);
-}
-
 void Sac::LearnLabel(const Transition& transition, Workspaces& workspaces, Sums& sums) const {
   const View<float> scores =
       actor_.Forward(actor_parameters_.data(), transition.state, workspaces.actor);

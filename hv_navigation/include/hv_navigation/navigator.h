@@ -30,6 +30,7 @@ struct NavigationInput {
   Time obstacles_stamp;  ///< of the oldest among the newest data of the obstacle sensors
 };
 
+/// What the next seconds are driven through; refers to the input.
 inline ObstaclesAhead AheadOf(const NavigationInput& input) {
   return {*input.local_grid, input.walkers.get(), input.now};
 }
@@ -121,6 +122,7 @@ class Navigator {
     bool blocked = false;
     bool strayed = false;
   };
+
   PlanningConfig config_;
   LocalPlanner local_;
   std::unique_ptr<Recovery> recovery_;

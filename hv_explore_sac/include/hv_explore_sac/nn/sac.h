@@ -60,9 +60,6 @@ class Sac {
   /// is linear in them, so that noise of the measurements averages out over states. Gives the mean
   /// of the loss.
   double FitPolicy(std::size_t count, const Fetch& fetch);
-  /// One step of the critics alone towards the `returns` of all actions, after which targets equal
-  /// critics; gives the mean loss.
-  double FitValues(std::size_t count, const Fetch& fetch);
   /// Takes over a policy of the same shape that was learned elsewhere. Throws
   /// std::invalid_argument.
   void AdoptActor(const Eigen::VectorXf& parameters);
@@ -102,7 +99,6 @@ class Sac {
                             Sums& sums) const;
   void LearnPolicy(const Transition& transition, const Matrix<float>& values,
                    Workspaces& workspaces, Sums& sums) const;
-  void LearnReturns(const Transition& transition, Workspaces& workspaces, Sums& sums) const;
   double StepActor(const Eigen::VectorXf& sums);
   double StepCritics(const Eigen::VectorXf& sums);
   void LearnLabel(const Transition& transition, Workspaces& workspaces, Sums& sums) const;
