@@ -251,6 +251,19 @@ TEST(LocalPlannerTest, GoesOnWhenSomebodyWalksAway) {
   EXPECT_LT(Meet({{8.0, 3.7}, {-1.0, 0.0}}).slowest_mps, 0.6);
 }
 
+TEST(LocalPlannerTest, WhoStandsLetsThoseNearbyGoFirst) {
+  const ClearanceGrid grid = Clearances(Hall());
+  const Time now = Time::FromSeconds(100.0);
+  const PlanarPose pose{{3.0, 2.5}, 0.0};
+  // One metre beside the robot, and walking away from it.
+  const Walkers walkers({}, {{now, {3.0, 3.78}, {0.0, 1.0}}});
+  LocalPlanner planner({}, {}, Footprint());
+  planner.SetPath(StraightPath(pose, 5.0));
+  EXPECT_EQ(planner.Plan({grid, &walkers, now}, pose, {}).state, LocalState::kBlocked);
+  EXPECT_EQ(planner.Plan({grid, &walkers, now}, pose, {0.2, 0.0}).state, LocalState::kDriving);
+  EXPECT_EQ(planner.Plan(grid, pose, {}).state, LocalState::kDriving);
+}
+
 TEST(LocalPlannerTest, PassesANarrowDoor) {
   OccupancyGrid cells = Hall();
   FillCells(cells, {4.9, 0.0}, {5.1, 2.1});

@@ -274,5 +274,24 @@ TEST_F(SurroundingsTest, WhoWalksLeavesNoTraceInTheMap) {
   EXPECT_TRUE(surroundings.view().map->OccupiedAt(Vector2d(2.05, 1.4)));
 }
 
+TEST_F(SurroundingsTest, FeetOfWhoWalksAreNoLowObstacles) {
+  Surroundings surroundings(config_, clearance_m_);
+  const SolidScene empty = scene_;
+  const double x = 1.3;
+  for (int i = 0; i < 30; ++i) {
+    const double y = -1.5 + 0.1 * i;
+    scene_ = empty;
+    scene_.AddBox({x - 0.15, y - 0.15, 0.0}, {x + 0.15, y + 0.15, 1.8});
+    // Those of the camera begin when the LiDAR has told who walks, and end before it sees through.
+    if (i > 10) surroundings.AddDepth(Image(0.1 * i), kCamera, T_odom_optical_, Pose::Identity());
+    Scan(surroundings, 0.1 * i);
+  }
+  scene_ = empty;
+  for (int i = 30; i < 50; ++i) Scan(surroundings, 0.1 * i);
+  for (double y = -0.3; y < 1.4; y += 0.05) {
+    EXPECT_FALSE(surroundings.view().local->OccupiedAt(Vector2d(x - 0.1, y))) << y;
+  }
+}
+
 }  // namespace
 }  // namespace hv::navigation
