@@ -283,7 +283,8 @@ TEST_F(SurroundingsTest, FeetOfWhoWalksAreNoLowObstacles) {
     scene_ = empty;
     scene_.AddBox({x - 0.15, y - 0.15, 0.0}, {x + 0.15, y + 0.15, 1.8});
     // Those of the camera begin when the LiDAR has told who walks, and end before it sees through.
-    if (i > 10) surroundings.AddDepth(Image(0.1 * i), kCamera, T_odom_optical_, Pose::Identity());
+    if (i > 10 && i < 17)
+      surroundings.AddDepth(Image(0.1 * i), kCamera, T_odom_optical_, Pose::Identity());
     Scan(surroundings, 0.1 * i);
   }
   scene_ = empty;
