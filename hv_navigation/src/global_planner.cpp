@@ -39,7 +39,7 @@ class Planning {
     if (!CheckStart() || !CheckGoal() || !FindShortest()) return plan_;
     double weight = config_.clearance_weight;
     PlanWith(weight);
-    if (plan_.outcome == PlanOutcome::kTooNarrow && MoveGoalToRoom()) PlanWith(weight);
+    if (!plan_.Found() && MoveGoalToRoom()) PlanWith(weight);
     // Room is worth a detour, within limits.
     while (plan_.Found() && weight > 0.0 && TooLong()) {
       weight = weight > 0.2 ? 0.3 * weight : 0.0;
@@ -244,16 +244,21 @@ class Planning {
     PoseChain chain = SearchTree(space, GuideAlong(RoomyRoute(space)), config_);
     if (chain.poses.empty()) chain = PlanWithRoom(space);
     if (chain.poses.empty()) chain = PlanByLattice(space);
-    if (chain.poses.empty()) {
-      Fail(PlanOutcome::kTooNarrow, "the way to the goal is too narrow for the robot to turn");
-      return;
-    }
+    if (chain.poses.empty()) return FailNarrow();
     RoundingRules rules{config_.corner_radius_m, config_.path_step_m, !AnyYaw(request_)};
     plan_.path = Rounded(space, chain.poses, rules);
     plan_.goal = plan_.path.back();
     plan_.length_m = Length(plan_.path);
     plan_.cost = chain.cost;
     Fail(PlanOutcome::kFound, "");
+  }
+
+  void FailNarrow() {
+    if (space_.IsFreeToTurn(request_.start.position)) {
+      Fail(PlanOutcome::kTooNarrow, "the way to the goal is too narrow for the robot to turn");
+    } else {
+      Fail(PlanOutcome::kCornered, "the robot has no room to turn where it stands");
+    }
   }
 
   /// The shortest way may lead where the robot fits through but cannot turn; another may not.

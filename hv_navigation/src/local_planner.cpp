@@ -97,6 +97,11 @@ std::optional<Velocity> LocalPlanner::BackOff(const ObstaclesAhead& ahead, const
   return window.Straight(-limits_.max_reverse_mps);
 }
 
+bool LocalPlanner::HasRoomToTurn(const ClearanceGrid& grid, const PlanarPose& pose) const {
+  return grid.ClearanceAt(pose.position) >=
+         footprint_.CircumscribedRadius() + grid.grid().resolution_m;
+}
+
 Velocity LocalPlanner::Brake(const Velocity& velocity) const {
   return Braked(velocity, limits_, config_.period_s);
 }

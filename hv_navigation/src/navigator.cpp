@@ -217,8 +217,9 @@ void Navigator::TakePlan(const NavigationInput& input, NavigationOutput& output)
   output.planning_ms = finished->planning_ms;
   const GlobalPlan& plan = finished->plan;
   pursuit_->problem = plan.reason;
-  pursuit_->problem_certain =
-      !finished->with_obstacles && plan.outcome != PlanOutcome::kStartBlocked;
+  pursuit_->cornered = plan.outcome == PlanOutcome::kCornered;
+  pursuit_->problem_certain = !finished->with_obstacles && !pursuit_->cornered &&
+                              plan.outcome != PlanOutcome::kStartBlocked;
   if (!plan.Found()) {
     const bool leads_elsewhere = course_ && course_->goal_id != goal_id_;
     if (leads_elsewhere) course_.reset();
@@ -291,7 +292,8 @@ void Navigator::Stuck(const NavigationInput& input, const std::string& reason,
   if (!course_ && pursuit_->problem_certain) {
     return Finish(NavigationResult::kNoPath, output.reason, output);
   }
-  if (Within(pursuit_->stuck_since, input.now, config_.navigator.wait_s)) return;
+  const bool may_pass = course_ || !pursuit_->cornered;
+  if (may_pass && Within(pursuit_->stuck_since, input.now, config_.navigator.wait_s)) return;
   const bool enough = recovery_->tried() >= config_.navigator.recoveries ||
                       !Within(pursuit_->progress, input.now, config_.navigator.give_up_s);
   if (enough) {
@@ -299,7 +301,7 @@ void Navigator::Stuck(const NavigationInput& input, const std::string& reason,
     return Finish(no_path ? NavigationResult::kNoPath : NavigationResult::kBlocked, output.reason,
                   output);
   }
-  recovery_->Begin(input, output);
+  recovery_->Begin(input, pursuit_->cornered, output);
 }
 
 }  // namespace hv::navigation

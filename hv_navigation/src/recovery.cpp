@@ -6,13 +6,15 @@ namespace hv::navigation {
 namespace {
 
 constexpr double kLookAgain_s = 1.0;
+constexpr double kBackOut_s = 30.0;
 constexpr double kAround = 2.0 * M_PI - 0.3;  // rad
 
 }  // namespace
 
-void Recovery::Begin(const NavigationInput& input, NavigationOutput& output) {
+void Recovery::Begin(const NavigationInput& input, bool cornered, NavigationOutput& output) {
   constexpr Step kOrder[] = {Step::kLookAgain, Step::kTurn, Step::kBackOff};
-  step_ = kOrder[tried_ % 3];
+  constexpr Step kOrderCornered[] = {Step::kBackOut, Step::kLookAgain, Step::kTurn};
+  step_ = (cornered ? kOrderCornered : kOrder)[tried_ % 3];
   ++tried_;
   begun_ = input.now;
   from_ = input.T_local_base;
@@ -43,6 +45,11 @@ bool Recovery::Run(const NavigationInput& input, NavigationOutput& output) {
       output.reason = "backs off";
       if (lasted_s < config_.turn_timeout_s) velocity = BackOff(input);
       break;
+    case Step::kBackOut:
+      output.state = NavigationState::kBackingOff;
+      output.reason = "backs off to where it can turn";
+      if (lasted_s < kBackOut_s) velocity = BackOut(input);
+      break;
   }
   if (!velocity) {
     step_ = Step::kNone;
@@ -62,6 +69,11 @@ std::optional<Velocity> Recovery::Turn(const NavigationInput& input) {
 std::optional<Velocity> Recovery::BackOff(const NavigationInput& input) const {
   const double driven_m = (input.T_local_base.position - from_.position).norm();
   if (driven_m >= config_.back_off_m) return std::nullopt;
+  return local_.BackOff(AheadOf(input), input.T_local_base, input.velocity);
+}
+
+std::optional<Velocity> Recovery::BackOut(const NavigationInput& input) const {
+  if (local_.HasRoomToTurn(*input.local_grid, input.T_local_base)) return std::nullopt;
   return local_.BackOff(AheadOf(input), input.T_local_base, input.velocity);
 }
 

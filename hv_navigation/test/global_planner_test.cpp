@@ -268,6 +268,20 @@ TEST(GlobalPlannerTest, TurnsWhereItFitsOnly) {
             PlanOutcome::kTooNarrow);
 }
 
+TEST(GlobalPlannerTest, TellsThatTheRobotIsCornered) {
+  OccupancyGrid cells = EmptyCells(120, 60, 0.1);
+  FenceCells(cells);
+  FillCells(cells, {8.0, 0.0}, {12.0, 2.6});
+  FillCells(cells, {8.0, 3.4}, {12.0, 6.0});
+  PlanRequest request;
+  request.start = {{10.5, 3.0}, 0.0};
+  request.goal = {{2.0, 3.0}, 0.0};
+  const GlobalPlanner planner({}, Footprint());
+  EXPECT_EQ(planner.Plan(Clearances(cells), request).outcome, PlanOutcome::kCornered);
+  request.start.yaw = M_PI;
+  EXPECT_TRUE(planner.Plan(Clearances(cells), request).Found());
+}
+
 TEST(GlobalPlannerTest, GoesAroundWhereTheShortestWayIsTooNarrowToTurn) {
   OccupancyGrid cells = EmptyCells(100, 100, 0.1);
   FenceCells(cells);

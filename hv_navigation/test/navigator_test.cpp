@@ -159,6 +159,33 @@ TEST(NavigatorTest, GivesUpOnACorridorThatStaysBlocked) {
   EXPECT_FALSE(site.collided);
 }
 
+TEST(NavigatorTest, BacksOutOfAnAlleyWhereItCannotTurn) {
+  // The alley, 0.8 m wide, is a dead end.
+  OccupancyGrid cells = EmptyCells(120, 60, 0.1);
+  FenceCells(cells);
+  FillCells(cells, {8.0, 0.0}, {12.0, 2.6});
+  FillCells(cells, {8.0, 3.4}, {12.0, 6.0});
+  SimulatedSite site(cells, {{10.5, 3.0}, 0.0}, {});
+  const PlanarPose goal{{2.0, 3.0}, M_PI};
+  site.navigator.SetGoal(goal);
+  EXPECT_EQ(site.Run(60.0), NavigationResult::kReached) << site.output.reason;
+  EXPECT_TRUE(At(site, goal));
+  EXPECT_FALSE(site.collided);
+}
+
+TEST(NavigatorTest, SaysThatItIsShutIn) {
+  OccupancyGrid cells = EmptyCells(120, 60, 0.1);
+  FenceCells(cells);
+  FillCells(cells, {7.0, 0.0}, {12.0, 2.6});
+  FillCells(cells, {7.0, 3.4}, {12.0, 6.0});
+  FillCells(cells, {7.0, 2.6}, {9.0, 3.4});
+  SimulatedSite site(cells, {{10.5, 3.0}, 0.0}, {});
+  site.navigator.SetGoal({{11.4, 3.0}, M_PI});
+  EXPECT_EQ(site.Run(100.0), NavigationResult::kBlocked);
+  EXPECT_NE(site.output.reason.find("no room to turn"), std::string::npos) << site.output.reason;
+  EXPECT_FALSE(site.collided);
+}
+
 TEST(NavigatorTest, ForgetsGhostsToGetOn) {
   SimulatedSite site(DeadStraight(), kWest, {});
   site.navigator.SetGoal(kEast);

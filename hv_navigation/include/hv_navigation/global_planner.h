@@ -44,6 +44,7 @@ enum class PlanOutcome {
   kGoalBlocked,   ///< and so is all within the tolerance
   kNoConnection,  ///< not even a robot as slim as the inscribed circle passes
   kTooNarrow,     ///< somewhere the way is too narrow to turn
+  kCornered,      ///< or the place where the robot stands is; backing out may help
 };
 
 struct GlobalPlan {

@@ -113,6 +113,9 @@ class LocalPlanner {
   std::optional<Velocity> BackOff(const ObstaclesAhead& ahead, const PlanarPose& pose,
                                   const Velocity& velocity) const;
 
+  /// Whether the robot can turn at `pose` with a cell to spare.
+  bool HasRoomToTurn(const ClearanceGrid& grid, const PlanarPose& pose) const;
+
   /// Slows down as fast as allowed, along the circle driven now.
   Velocity Brake(const Velocity& velocity) const;
 

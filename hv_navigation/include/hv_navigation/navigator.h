@@ -107,6 +107,7 @@ class Navigator {
     std::optional<Time> requested;  ///< the last plan
     std::string problem;            ///< of that plan; empty when found
     bool problem_certain = false;   ///< the map alone shows it
+    bool cornered = false;          ///< it is that the robot cannot turn where it stands
     std::optional<Time> progress;   ///< when it last got on
     std::optional<Time> stuck_since;
   };
