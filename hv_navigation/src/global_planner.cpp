@@ -21,8 +21,6 @@ constexpr double kLookAhead_m = 1.0;  // over which the route's direction is tak
 
 using Cells = std::vector<Eigen::Vector2i>;
 
-bool AnyYaw(const PlanRequest& request) { return request.yaw_tolerance >= M_PI; }
-
 /// One plan, step by step.
 class Planning {
  public:
@@ -32,6 +30,7 @@ class Planning {
         footprint_(footprint),
         grid_(grid),
         request_(request),
+        tolerance_{request.goal_tolerance_m, request.yaw_tolerance},
         space_(grid, footprint, {config.clearance_weight, config.soft_clearance_m}),
         search_(grid) {}
 
@@ -57,6 +56,8 @@ class Planning {
     return false;
   }
 
+  bool AnyYaw() const { return tolerance_.yaw >= M_PI; }
+
   bool TooLong() const { return plan_.length_m > config_.max_detour * plan_.grid_length_m; }
 
   /// The robot may stand a little too near to something, and must then be able to leave.
@@ -78,7 +79,13 @@ class Planning {
     if (!grid_.Contains(grid_.CellOf(request_.goal.position))) {
       return Fail(PlanOutcome::kGoalOutside, "the goal is outside of the map");
     }
-    const std::optional<PlanarPose> goal = NearestGoal([](const Eigen::Vector2i&) { return true; });
+    std::optional<PlanarPose> goal = NearestGoal([](const Eigen::Vector2i&) { return true; });
+    if (!goal && request_.approach_m > tolerance_.distance_m) {
+      plan_.falls_short = true;
+      tolerance_ = {request_.approach_m, M_PI};
+      goal = NearestGoal(
+          [this](const auto& cell) { return space_.IsFreeToTurn(grid_.CenterOf(cell)); });
+    }
     if (!goal) return Fail(PlanOutcome::kGoalBlocked, "the goal is in or too near to an obstacle");
     plan_.goal = *goal;
     return true;
@@ -105,12 +112,12 @@ class Planning {
       return (grid_.CenterOf(cell) - request_.goal.position).norm();
     };
     const int radius =
-        static_cast<int>(std::floor(request_.goal_tolerance_m / grid_.grid().resolution_m));
+        static_cast<int>(std::floor(tolerance_.distance_m / grid_.grid().resolution_m));
     Cells cells;
     for (int y = -radius; y <= radius; ++y) {
       for (int x = -radius; x <= radius; ++x) {
         const Eigen::Vector2i cell = center + Eigen::Vector2i(x, y);
-        if (grid_.Contains(cell) && distance_m(cell) <= request_.goal_tolerance_m) {
+        if (grid_.Contains(cell) && distance_m(cell) <= tolerance_.distance_m) {
           cells.push_back(cell);
         }
       }
@@ -122,7 +129,7 @@ class Planning {
 
   std::optional<PlanarPose> FreeYaw(const Eigen::Vector2d& position) const {
     constexpr double kStep = 0.1;
-    const double tolerance = std::min(request_.yaw_tolerance, M_PI);
+    const double tolerance = std::min(tolerance_.yaw, M_PI);
     for (double turn = 0.0; turn <= tolerance + 1e-9; turn += kStep) {
       for (const double side : {turn, -turn}) {
         const PlanarPose pose{position, request_.goal.yaw + side};
@@ -233,7 +240,7 @@ class Planning {
   /// Where any heading will do, that of arrival.
   PlanarPose Goal(const PlanarPose& before) const {
     PlanarPose goal = plan_.goal;
-    if (!AnyYaw(request_)) return goal;
+    if (!AnyYaw()) return goal;
     goal.yaw = Between(before, goal).heading;
     return space_.IsFree(goal) ? goal : plan_.goal;
   }
@@ -245,7 +252,7 @@ class Planning {
     if (chain.poses.empty()) chain = PlanWithRoom(space);
     if (chain.poses.empty()) chain = PlanByLattice(space);
     if (chain.poses.empty()) return FailNarrow();
-    RoundingRules rules{config_.corner_radius_m, config_.path_step_m, !AnyYaw(request_)};
+    RoundingRules rules{config_.corner_radius_m, config_.path_step_m, !AnyYaw()};
     plan_.path = Rounded(space, chain.poses, rules);
     plan_.goal = plan_.path.back();
     plan_.length_m = Length(plan_.path);
@@ -279,6 +286,10 @@ class Planning {
   const Footprint& footprint_;
   const ClearanceGrid& grid_;
   const PlanRequest& request_;
+  struct {
+    double distance_m;
+    double yaw;  // rad
+  } tolerance_;  // of the goal
   FreeSpace space_;
   GridSearch search_;
   Cells shortest_;

@@ -9,6 +9,9 @@
 namespace hv::navigation {
 namespace {
 
+constexpr int kLooksAtGoal = 3;  // before one that is not free is given up
+constexpr char kGoalNotFree[] = "the goal is in or too near to an obstacle";
+
 PlanarPose LocalFromMap(const NavigationInput& input) {
   return input.T_local_base * input.T_map_base.Inverse();
 }
@@ -177,6 +180,7 @@ PlanningJob Navigator::JobNow(const NavigationInput& input) const {
   job.request.goal = pursuit_->goal;
   job.request.goal_tolerance_m = config_.navigator.goal_slack_m;
   job.request.yaw_tolerance = config_.navigator.goal_yaw_slack;
+  job.request.approach_m = config_.navigator.approach_m;
   job.map = input.map;
   job.seen = Standing(input);
   job.remembered = memory_.Places();
@@ -199,6 +203,7 @@ void Navigator::ConsiderPlanning(const NavigationInput& input) {
 bool Navigator::IsWorthTaking(const GlobalPlan& plan) const {
   if (!course_ || course_->goal_id != goal_id_) return true;
   if (course_->blocked || course_->strayed || pursuit_->stuck_since) return true;
+  if (course_->falls_short && !plan.falls_short) return true;
   const double present = course_->cost_per_m * course_->remaining_m;
   return plan.cost < config_.navigator.better_plan * present;
 }
@@ -234,6 +239,7 @@ void Navigator::TakePlan(const NavigationInput& input, NavigationOutput& output)
   course_->cost_per_m = plan.length_m > 0.0 ? plan.cost / plan.length_m : 1.0;
   course_->remaining_m = plan.length_m;
   course_->least_remaining_m = least_m;
+  course_->falls_short = plan.falls_short;
   course_->map = input.map;
   local_.SetPath(*course_->path);
   local_.MovePath(course_->T_local_map);
@@ -255,11 +261,7 @@ void Navigator::Drive(const NavigationInput& input, NavigationOutput& output) {
   output.trajectory = local.trajectory;
   output.remaining_m = course_->remaining_m = local.remaining_m;
   course_->strayed = local.off_path_m > config_.navigator.stray_m;
-  if (local.state == LocalState::kReached) {
-    output.state = NavigationState::kPlanning;
-    if (course_->goal_id == goal_id_) Finish(NavigationResult::kReached, "", output);
-    return;
-  }
+  if (local.state == LocalState::kReached) return ArriveAtEnd(input, output);
   NoteProgress(input, local);
   const bool idles = !Within(pursuit_->progress, input.now, config_.navigator.stuck_s);
   if (local.state != LocalState::kDriving || idles) {
@@ -269,6 +271,15 @@ void Navigator::Drive(const NavigationInput& input, NavigationOutput& output) {
   }
   output.state = NavigationState::kDriving;
   if (course_->blocked) output.reason = "the path is blocked ahead; " + pursuit_->problem;
+}
+
+/// Of the path, which may belong to the goal before, or end before a goal that is not free.
+void Navigator::ArriveAtEnd(const NavigationInput& input, NavigationOutput& output) {
+  output.state = NavigationState::kPlanning;
+  if (course_->goal_id != goal_id_) return;
+  if (!course_->falls_short) return Finish(NavigationResult::kReached, "", output);
+  if (recovery_->tried() < kLooksAtGoal) return Stuck(input, kGoalNotFree, output);
+  Finish(NavigationResult::kNoPath, kGoalNotFree, output);
 }
 
 void Navigator::NoteProgress(const NavigationInput& input, const LocalPlan& local) {

@@ -17,6 +17,8 @@ void NavigatorConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("check_ahead_m", check_ahead_m, "of the path that is checked for obstacles [m]");
   visitor.Field("stray_m", stray_m, "distance from the path at which a new one is planned [m]");
   visitor.Field("goal_slack_m", goal_slack_m, "how far a goal may be moved that is not free [m]");
+  visitor.Field("approach_m", approach_m,
+                "how near to a goal that is in an obstacle it goes to look again [m]");
   visitor.Field("goal_yaw_slack", goal_yaw_slack, "and how far turned; from pi on any [rad]");
   visitor.Field("wait_s", wait_s, "for something to get out of the way, before recovery [s]");
   visitor.Field("stuck_s", stuck_s, "time without progress after which recovery begins [s]");
@@ -52,6 +54,7 @@ void NavigatorConfig::Validate(ConfigProblems& problems) const {
   require(remember_s >= 0.0, "remember_s", "must not be negative");
   require(better_plan > 0.0 && better_plan <= 1.0, "better_plan", "must lie between 0 and 1");
   require(goal_slack_m >= 0.0, "goal_slack_m", "must not be negative");
+  require(approach_m >= 0.0, "approach_m", "must not be negative");
   require(goal_yaw_slack >= 0.0, "goal_yaw_slack", "must not be negative");
   require(recoveries >= 0, "recoveries", "must not be negative");
 }

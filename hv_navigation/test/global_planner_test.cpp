@@ -222,6 +222,23 @@ TEST(GlobalPlannerTest, MovesABlockedGoalWithinItsTolerance) {
   ExpectDrivable(plan.path, grid, Footprint());
 }
 
+TEST(GlobalPlannerTest, GoesNearAGoalThatIsNotFree) {
+  OccupancyGrid cells = TwoRooms(0.8, 0.05);
+  FillCells(cells, {8.4, 4.4}, {9.6, 5.6});
+  const ClearanceGrid grid = Clearances(cells);
+  PlanRequest request = ThroughTheDoor();
+  request.goal_tolerance_m = 0.3;
+  EXPECT_FALSE(GlobalPlanner({}, Footprint()).Plan(grid, request).Found());
+  request.approach_m = 1.5;
+  const GlobalPlan plan = GlobalPlanner({}, Footprint()).Plan(grid, request);
+  ASSERT_TRUE(plan.Found()) << plan.reason;
+  EXPECT_TRUE(plan.falls_short);
+  EXPECT_LE((plan.goal.position - request.goal.position).norm(), 1.1);
+  ExpectDrivable(plan.path, grid, Footprint());
+  request.goal.position = {7.5, 4.0};
+  EXPECT_FALSE(GlobalPlanner({}, Footprint()).Plan(grid, request).falls_short);
+}
+
 TEST(GlobalPlannerTest, ArrivesAsItComesWhenAnyHeadingWillDo) {
   PlanRequest request;
   request.start = {{1.0, 3.0}, 0.0};

@@ -173,6 +173,30 @@ TEST(NavigatorTest, BacksOutOfAnAlleyWhereItCannotTurn) {
   EXPECT_FALSE(site.collided);
 }
 
+/// The map holds something at the goal, which is there or not.
+class OccupiedGoal : public testing::TestWithParam<bool> {};
+
+TEST_P(OccupiedGoal, IsLookedAtFromNear) {
+  const OccupancyGrid free = DeadStraight();
+  OccupancyGrid occupied = free;
+  FillCells(occupied, {17.6, 0.8}, {18.4, 1.6});
+  SimulatedSite site(occupied, kWest, {});
+  if (!GetParam()) site.world = free;
+  site.navigator.SetGoal(kEast);
+  while (site.robot.pose().position.x() < 15.0) ASSERT_FALSE(site.Step().result);
+  // So does whatever makes the map of what is seen.
+  if (!GetParam()) site.SetMap(free);
+  site.Run(60.0);
+  EXPECT_EQ(site.output.result,
+            GetParam() ? NavigationResult::kNoPath : NavigationResult::kReached);
+  EXPECT_EQ(At(site, kEast), !GetParam());
+  EXPECT_EQ(site.output.reason.find("the goal is in") != std::string::npos, GetParam());
+  EXPECT_GT(site.robot.pose().position.x(), 16.0);
+  EXPECT_FALSE(site.collided);
+}
+
+INSTANTIATE_TEST_SUITE_P(IsThere, OccupiedGoal, testing::Bool());
+
 TEST(NavigatorTest, SaysThatItIsShutIn) {
   OccupancyGrid cells = EmptyCells(120, 60, 0.1);
   FenceCells(cells);

@@ -34,6 +34,7 @@ struct PlanRequest {
   PlanarPose goal;
   double goal_tolerance_m = 0.0;  ///< how far off the goal may be moved when it is not free
   double yaw_tolerance = 0.0;     ///< and turned [rad]; from pi on any heading will do
+  double approach_m = 0.0;        ///< where nothing of that is free, how near it will do to get
 };
 
 enum class PlanOutcome {
@@ -49,9 +50,10 @@ enum class PlanOutcome {
 
 struct GlobalPlan {
   PlanOutcome outcome = PlanOutcome::kNoConnection;
-  std::string reason;  ///< one line; empty when found
-  Path path;           ///< from the start to `goal`, drivable ahead and by turns on the spot
-  PlanarPose goal;     ///< the goal, or the free pose within the tolerance
+  std::string reason;        ///< one line; empty when found
+  Path path;                 ///< from the start to `goal`, drivable ahead and by turns on the spot
+  PlanarPose goal;           ///< the goal, or the free pose within the tolerance
+  bool falls_short = false;  ///< the goal is not free: `goal` is the nearest place to turn
   double length_m = 0.0;
   double grid_length_m = 0.0;  ///< the shortest way of the inscribed circle over cells
   double cost = 0.0;           ///< length with the nearness of obstacles and turns counted [m]

@@ -97,6 +97,7 @@ class Navigator {
   bool IsWorthTaking(const GlobalPlan& plan) const;
   double LeastRemaining(const GlobalPlan& plan) const;
   void Drive(const NavigationInput& input, NavigationOutput& output);
+  void ArriveAtEnd(const NavigationInput& input, NavigationOutput& output);
   void NoteProgress(const NavigationInput& input, const LocalPlan& local);
   void Stuck(const NavigationInput& input, const std::string& reason, NavigationOutput& output);
   void Finish(NavigationResult result, const std::string& reason, NavigationOutput& output);
@@ -120,6 +121,7 @@ class Navigator {
     double remaining_m = 0.0;
     double least_remaining_m = 0.0;
     std::shared_ptr<const ClearanceGrid> map;  ///< in which it was found free
+    bool falls_short = false;                  ///< of the goal, which is not free
     bool blocked = false;
     bool strayed = false;
   };

@@ -19,6 +19,7 @@ struct NavigatorConfig {
   double check_ahead_m = 6.0;
   double stray_m = 0.7;
   double goal_slack_m = 0.3;
+  double approach_m = 1.5;
   double goal_yaw_slack = 0.1;
   double wait_s = 3.0;
   double stuck_s = 8.0;
