@@ -189,13 +189,7 @@ void GlobalGrid::TakeCell(const Vector2i& at, bool occupied, bool near) {
   const bool is_free =
       next <= -config_.clear_views || (!occupied && cell == OccupancyGrid::kUnknown);
   if (is_free && fixed_[index] == 0) cell = OccupancyGrid::kFree;
-  if (cell != before) NoteChange(at);
-}
-
-void GlobalGrid::NoteChange(const Vector2i& at) {
-  if (!changes_.cells) changes_.cells = CellBox{at, at};
-  changes_.cells->low = changes_.cells->low.cwiseMin(at);
-  changes_.cells->high = changes_.cells->high.cwiseMax(at);
+  if (cell != before) Include(at, changes_.cells);
 }
 
 void GlobalGrid::ForgetViews() {

@@ -26,27 +26,29 @@ void LeaveOut(const Walkers& walkers, Time now, const Pose& T_odom_optical,
   points.erase(std::remove_if(points.begin(), points.end(), on_walker), points.end());
 }
 
-/// Makes unknown what is where those who walk may be; gives the cells that changed.
+/// Makes unknown what is where one who walks may be; `changed` includes those cells.
+void TakeOut(const WalkConfig& config, const Walker& walker, Time now, OccupancyGrid& grid,
+             std::optional<CellBox>& changed) {
+  const double person_m = config.radius_m + kAround_m;
+  const double walked_m = config.most_mps * std::max(0.0, now - walker.stamp);
+  const Eigen::Vector2d reach = Eigen::Vector2d::Constant(person_m + walked_m);
+  const Eigen::Vector2i low = grid.CellOf(walker.place - reach);
+  const Eigen::Vector2i high = grid.CellOf(walker.place + reach);
+  for (int y = low.y(); y <= high.y(); ++y) {
+    for (int x = low.x(); x <= high.x(); ++x) {
+      const Eigen::Vector2i at(x, y);
+      if (!grid.Contains(at) || !OccupancyGrid::IsOccupied(grid.At(x, y))) continue;
+      if (!Walkers::MayBeNear(config, walker, grid.CenterOf(at), person_m, now)) continue;
+      grid.At(x, y) = OccupancyGrid::kUnknown;
+      Include(at, changed);
+    }
+  }
+}
+
 std::optional<CellBox> TakeOut(const Walkers& walkers, Time now, OccupancyGrid& grid) {
-  const WalkConfig& config = walkers.config();
   std::optional<CellBox> changed;
   for (const Walker& walker : walkers.all()) {
-    const double person_m = config.radius_m + kAround_m;
-    const double reach_m = person_m + config.most_mps * std::max(0.0, now - walker.stamp);
-    const Eigen::Vector2d reach = Eigen::Vector2d::Constant(reach_m);
-    const Eigen::Vector2i low = grid.CellOf(walker.place - reach);
-    const Eigen::Vector2i high = grid.CellOf(walker.place + reach);
-    for (int y = low.y(); y <= high.y(); ++y) {
-      for (int x = low.x(); x <= high.x(); ++x) {
-        const Eigen::Vector2i at(x, y);
-        if (!grid.Contains(at) || !OccupancyGrid::IsOccupied(grid.At(x, y))) continue;
-        if (!Walkers::MayBeNear(config, walker, grid.CenterOf(at), person_m, now)) continue;
-        grid.At(x, y) = OccupancyGrid::kUnknown;
-        if (!changed) changed = CellBox{at, at};
-        changed->low = changed->low.cwiseMin(at);
-        changed->high = changed->high.cwiseMax(at);
-      }
-    }
+    TakeOut(walkers.config(), walker, now, grid, changed);
   }
   return changed;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "hv_core/error.h"
@@ -78,12 +77,7 @@ NavigationRun::NavigationRun(const SlamConfig& config, sim::World world,
                                             MakeLocator(config_, options_, started, T_map_world_),
                                             saved_);
   trial_log_ = std::make_unique<CsvLog>(options_.out + "/trials.csv", TrialHeader());
-  collision_log_ = std::make_unique<CollisionLog>(options_.out + "/collisions.csv");
-  cycle_log_ = std::make_unique<CsvLog>(
-      options_.out + "/cycles.csv",
-      "stamp,trial,state,x,y,yaw,true_x,true_y,true_yaw,linear_mps,angular_rps,command_linear,"
-      "command_angular,remaining_m,localized,plan_ms,control_ms,grids_ms,update_ms,depth_ms,"
-      "octree_nodes,walkers,reason");
+  journal_ = std::make_unique<DriveJournal>(options_.out);
 }
 
 std::vector<NavigationTrial> NavigationRun::Run() {
@@ -143,7 +137,7 @@ NavigationTrial NavigationRun::Drive(const GoalSampler::Goal& goal, int number) 
     const int recoveries = last_.output.recoveries;
     last_ = drive_->Cycle();
     trial.recoveries += std::max(0, last_.output.recoveries - recoveries);
-    Note(last_, trial);
+    journal_->Note(last_, T_map_world_, trial);
     PutBox(last_, trial);
     NoteResponse(last_, trial);
     trial.time_s = drive_->time_s() - begin_s;
@@ -160,36 +154,6 @@ NavigationTrial NavigationRun::Drive(const GoalSampler::Goal& goal, int number) 
   if (given_up) trial.reason = "too long under way";
   if (!last_.output.reason.empty()) trial.reason += ": " + last_.output.reason;
   return trial;
-}
-
-void NavigationRun::Note(const DriveCycle& cycle, NavigationTrial& trial) {
-  const navigation::PlanarPose base = InMap(cycle.T_world_base);
-  trial.driven_m += (base.position - trial.line.back()).norm();
-  trial.line.push_back(base.position);
-  const auto append = [](const std::vector<double>& from, std::vector<double>& to) {
-    to.insert(to.end(), from.begin(), from.end());
-  };
-  append(cycle.update_ms, trial.update_ms);
-  append(cycle.depth_ms, trial.depth_ms);
-  trial.control_ms.push_back(cycle.control_ms);
-  trial.grids_ms.push_back(cycle.grids_ms);
-  if (cycle.output.planning_ms) trial.plan_ms.push_back(*cycle.output.planning_ms);
-  trial.octree_nodes = std::max(trial.octree_nodes, cycle.octree_nodes);
-  if (cycle.place) {
-    const Pose T_map_base = cycle.place->T_map_odom * cycle.place->T_odom_base;
-    const Eigen::Vector2d believed = T_map_base.translation().head<2>();
-    trial.worst_place_m = std::max(trial.worst_place_m, (believed - base.position).norm());
-  }
-  NoteCollisions(cycle, trial);
-  Log(cycle, trial.number);
-}
-
-void NavigationRun::NoteCollisions(const DriveCycle& cycle, NavigationTrial& trial) const {
-  CollisionCount count;
-  collision_log_->Note(cycle, T_map_world_, trial.number, count);
-  trial.collisions += count.collisions;
-  trial.hit_by_people += count.hit_by_people;
-  trial.contacts.insert(trial.contacts.end(), count.contacts.begin(), count.contacts.end());
 }
 
 DriveSituation NavigationRun::SituationAt(const DriveCycle& cycle) const {
@@ -230,33 +194,6 @@ void NavigationRun::WaitForBoxToGo() {
   while (drive_->time_s() <= box_->until_s + SimulatedDrive::kPeriod_s) last_ = drive_->Cycle();
   drive_->ForgetViews();
   last_ = drive_->Cycle();
-}
-
-void NavigationRun::Log(const DriveCycle& cycle, int trial) {
-  const auto sum = [](const std::vector<double>& values) {
-    double total = 0.0;
-    for (const double value : values) total += value;
-    return total;
-  };
-  const navigation::PlanarPose truth = InMap(cycle.T_world_base);
-  navigation::PlanarPose place;
-  navigation::Velocity velocity;
-  if (cycle.place) {
-    place = navigation::Planar(cycle.place->T_map_odom * cycle.place->T_odom_base);
-    velocity = cycle.place->velocity;
-  }
-  const navigation::NavigationOutput& output = cycle.output;
-  char text[512];
-  std::snprintf(text, sizeof(text),
-                ",%d,%s,%.3f,%.3f,%.4f,%.3f,%.3f,%.4f,%.3f,%.3f,%.3f,%.3f,%.2f,%d,%.2f,%.2f,%.2f,"
-                "%.2f,%.2f,%zu,%zu,",
-                trial, navigation::ToString(output.state), place.position.x(), place.position.y(),
-                place.yaw, truth.position.x(), truth.position.y(), truth.yaw, velocity.linear_mps,
-                velocity.angular_rps, output.velocity.linear_mps, output.velocity.angular_rps,
-                output.remaining_m, cycle.place && cycle.place->localized ? 1 : 0,
-                output.planning_ms.value_or(0.0), cycle.control_ms, cycle.grids_ms,
-                sum(cycle.update_ms), sum(cycle.depth_ms), cycle.octree_nodes, cycle.walkers);
-  cycle_log_->Append(ToString(cycle.stamp) + text + '"' + output.reason + '"');
 }
 
 void NavigationRun::Draw(const std::vector<NavigationTrial>& trials) const {

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSpacing = 0.7;     ///< [m] between waypoints
+constexpr double kSpacing = 0.35;    ///< [m] between waypoints
 constexpr double kTurnRadius = 0.7;  ///< [m] of the circle to turn back on
 constexpr double kTurnRoom = 1.45;   ///< [m] clearance at its centre
 constexpr double kFar = std::numeric_limits<double>::infinity();
@@ -201,20 +201,15 @@ class RoutePlanner {
 
   /// Waypoints along the walk, with its staircase of cells smoothed away.
   std::vector<Vector3d> Waypoints(const std::vector<int>& walk) const {
-    const int window = std::max(1, static_cast<int>(0.5 * kSpacing / plan_.resolution));
-    const int count = static_cast<int>(walk.size());
     std::vector<Vector3d> points;
     double done = kSpacing;
     Vector2d last = Vector2d::Zero();
-    for (int i = 0; i < count; ++i) {
-      const int reach = std::min({window, i, count - 1 - i});
-      Vector2d mean = Vector2d::Zero();
-      for (int k = i - reach; k <= i + reach; ++k) mean += At(walk[static_cast<std::size_t>(k)]);
-      mean /= 2 * reach + 1;
-      if (i > 0) done += (mean - last).norm();
-      last = mean;
+    for (std::size_t i = 0; i < walk.size(); ++i) {
+      const Vector2d at = Smoothed(walk, static_cast<int>(i));
+      if (i > 0) done += (at - last).norm();
+      last = at;
       if (done < kSpacing) continue;
-      points.emplace_back(mean.x(), mean.y(), 0.0);
+      points.emplace_back(at.x(), at.y(), 0.0);
       done = 0.0;
     }
     return points;
@@ -222,6 +217,19 @@ class RoutePlanner {
 
  private:
   Vector2d At(int cell) const { return plan_.Center(cell % plan_.width, cell / plan_.width); }
+
+  /// The middle of the walk about its cell `i`: of as much of it as leaves clearance.
+  Vector2d Smoothed(const std::vector<int>& walk, int i) const {
+    const int window = std::max(1, static_cast<int>(kSpacing / plan_.resolution));
+    const int count = static_cast<int>(walk.size());
+    for (int reach = std::min({window, i, count - 1 - i}); reach > 0; --reach) {
+      Vector2d mean = Vector2d::Zero();
+      for (int k = i - reach; k <= i + reach; ++k) mean += At(walk[static_cast<std::size_t>(k)]);
+      mean /= 2 * reach + 1;
+      if (graph_.Open(CellAt(mean))) return mean;
+    }
+    return At(walk[static_cast<std::size_t>(i)]);
+  }
 
   static int Farthest(const CellGraph::Tree& tree, const std::vector<int>& area) {
     return *std::max_element(area.begin(), area.end(), [&tree](int a, int b) {
@@ -346,15 +354,13 @@ std::vector<Vector3d> LongestRoute(const FloorPlan& plan, double promised, std::
   std::vector<Vector3d> best;
   // Smoothing and rounding cut corners, so plan with some reserve; with less if the rooms are
   // small.
-  for (const double reserve : {0.4, 0.25, 0.15, 0.08}) {
+  for (const double reserve : {0.4, 0.25, 0.2, 0.15, 0.08}) {
     Random random({seed});
     const RoutePlanner planner(coarse.plan, coarse.clearance, promised + reserve);
     const std::vector<Vector3d> route = planner.Waypoints(planner.Walk(random));
     const bool keeps_off = route.size() >= 2 && LeastClearance(plan, clearance, route) >=
                                                     promised + 0.7 * plan.resolution;
     if (keeps_off && Length(route) > Length(best)) best = route;
-    constexpr double kLongEnough = 100.0;  // [m]
-    if (Length(best) > kLongEnough) break;
   }
   return best;
 }
@@ -365,12 +371,13 @@ std::vector<Vector3d> PlanRoute(const FloorPlan& plan, std::uint32_t seed) {
   constexpr double kShortest = 5.0;  // [m]
   constexpr double kWorthIt = 60.0;  // [m]
   std::vector<Vector3d> route = LongestRoute(plan, 0.6, seed);
-  if (Length(route) < kWorthIt) {
-    std::vector<Vector3d> narrow = LongestRoute(plan, 0.45, seed);
+  for (const double promised : {0.45, 0.15}) {
+    if (Length(route) >= kWorthIt) break;
+    std::vector<Vector3d> narrow = LongestRoute(plan, promised, seed);
     if (Length(narrow) > 2.0 * Length(route)) route = std::move(narrow);
   }
   if (Length(route) < kShortest) {
-    throw InputError(plan.path + ": no way of 5 m keeps 0.45 m from all walls");
+    throw InputError(plan.path + ": no way of 5 m keeps 0.15 m from all walls");
   }
   return route;
 }

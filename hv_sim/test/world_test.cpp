@@ -292,7 +292,7 @@ TEST_F(FloorPlanFile, BadFilesAreNamedWithTheirFault) {
 
 TEST_F(FloorPlanFile, RoomTooSmallForARobotIsRefused) {
   Write("plan.pgm", "P2\n4 4\n255\n0 0 0 0 0 254 254 0 0 254 254 0 0 0 0 0\n");
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml()), "0.45 m from all walls"));
+  EXPECT_TRUE(Contains(ErrorOf(WriteYaml()), "0.15 m from all walls"));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "hv_core/occupancy_grid.h"
@@ -11,6 +12,13 @@ struct CellBox {
   Eigen::Vector2i low;
   Eigen::Vector2i high;
 };
+
+/// The least box that holds a cell too.
+inline void Include(const Eigen::Vector2i& cell, std::optional<CellBox>& box) {
+  if (!box) box = CellBox{cell, cell};
+  box->low = box->low.cwiseMin(cell);
+  box->high = box->high.cwiseMax(cell);
+}
 
 /// A grid of obstacles with the distance to the nearest one for each cell. Places outside count as
 /// unknown. Immutable; const methods may run concurrently.

@@ -53,7 +53,6 @@ class GlobalGrid {
   void GrowToHold(const Eigen::Vector2d& low, const Eigen::Vector2d& high);
   OccupancyGrid Turned(const OccupancyGrid& observed, const PlanarPose& T_map_odom) const;
   void TakeCell(const Eigen::Vector2i& at, bool occupied, bool near);
-  void NoteChange(const Eigen::Vector2i& at);
 
   GlobalGridConfig config_;
   OccupancyGrid grid_;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "hv_core/occupancy_grid.h"
-#include "hv_replay/collision_log.h"
 #include "hv_replay/csv_log.h"
+#include "hv_replay/drive_journal.h"
 #include "hv_replay/goal_sampler.h"
 #include "hv_replay/navigation_scenario.h"
 #include "hv_replay/navigation_trial.h"
@@ -48,12 +48,9 @@ class NavigationRun {
   void FindPlace();
   std::optional<GoalSampler::Goal> NextGoal();
   NavigationTrial Drive(const GoalSampler::Goal& goal, int number);
-  void Note(const DriveCycle& cycle, NavigationTrial& trial);
-  void NoteCollisions(const DriveCycle& cycle, NavigationTrial& trial) const;
   void PutBox(const DriveCycle& cycle, NavigationTrial& trial);
   void NoteResponse(const DriveCycle& cycle, NavigationTrial& trial);
   void WaitForBoxToGo();
-  void Log(const DriveCycle& cycle, int trial);
   void Draw(const std::vector<NavigationTrial>& trials) const;
   DriveSituation SituationAt(const DriveCycle& cycle) const;
   navigation::PlanarPose InMap(const Pose& T_world_base) const;
@@ -70,8 +67,7 @@ class NavigationRun {
   std::optional<sim::TimedBox> box_;  ///< of the drive under way
   DriveCycle last_;
   std::unique_ptr<CsvLog> trial_log_;
-  std::unique_ptr<CollisionLog> collision_log_;
-  std::unique_ptr<CsvLog> cycle_log_;
+  std::unique_ptr<DriveJournal> journal_;
 };
 
 }  // namespace hv::replay

@@ -43,9 +43,9 @@ std::vector<CellBlock> MergeOccupied(const FloorPlan& plan);
 /// walls only as the edge of what was seen.
 FloorPlan CloseBorders(FloorPlan plan);
 
-/// An open route that keeps 0.6 m from everything but free cells, or 0.45 m where that reaches much
-/// further. It passes through far places in turn and never turns back on the spot. Throws
-/// InputError when there is none of 5 m.
+/// An open route that keeps 0.6 m from everything but free cells, or 0.45 m or 0.15 m where that
+/// reaches much further. It passes through far places in turn and never turns back on the spot.
+/// Throws InputError when there is none of 5 m.
 std::vector<Eigen::Vector3d> PlanRoute(const FloorPlan& plan, std::uint32_t seed);
 
 /// Walls of 2.7 m on every occupied cell of CloseBorders(plan), floor, ceiling and a route.

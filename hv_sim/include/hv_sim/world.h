@@ -24,7 +24,7 @@ struct PersonPath {
 };
 
 /// Geometry to look at and a way through it. `route` is a polyline on the floor (z is the floor's
-/// height). Between 0.7 and 1.5 m above it, it keeps at least 0.6 m (0.45 m in narrow floor plans)
+/// height). Between 0.7 and 1.5 m above it, it keeps at least 0.6 m (0.15 m in narrow floor plans)
 /// from everything static, its corners sharp or rounded with a radius of up to 1 m. When `closed`,
 /// the last waypoint leads back to the first.
 struct World {
