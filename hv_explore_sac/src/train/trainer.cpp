@@ -18,7 +18,7 @@ constexpr int kPoints = 10;
 /// Maps for validation on which labels are made as well.
 constexpr std::size_t kGaugeMaps = 60;
 
-std::string LabelName(int round) { return "labels_" + std::to_string(round + 1); }
+std::string RoundName(int round) { return std::to_string(round + 1); }
 
 /// What random numbers are for; each purpose in each round has its own.
 enum Purpose : std::uint64_t { kLabels, kGauge, kFit, kFirstEpisodes, kEpisodes, kPurposes };
@@ -34,6 +34,7 @@ Trainer::Trainer(const TrainConfig& config, const std::vector<ExplorationMap>& m
       sensor_(config.exploration.simulation),
       folder_(std::move(folder)),
       ranks_(ranks),
+      archive_(folder_, ranks.rank()),
       report_(std::move(report)) {
   const auto held_out = static_cast<std::size_t>(config.split.held_out);
   const auto validation = static_cast<std::size_t>(config.split.validation);
@@ -59,10 +60,12 @@ void Trainer::Run() {
 }
 
 void Trainer::Begin() {
+  archive_.Clear();
   report_("utility on the maps for validation", 0.0);
   utility_travel_ =
       Validate(validation_, config_.exploration, sensor_, RolloutOf(nullptr), ranks_).travel;
   best_travel_ = utility_travel_;
+  Save();
 }
 
 void Trainer::RunRound() {
@@ -84,27 +87,26 @@ Rollout Trainer::RolloutOf(std::shared_ptr<const PolicyNetwork> network) const {
 }
 
 void Trainer::CollectLabels() {
-  Label(ShareOf(training_, ranks_), Seed(kLabels), RankPath(LabelName(round_)));
+  Label(RoundName(round_), ShareOf(training_, ranks_), Seed(kLabels));
   std::vector<const ExplorationMap*> few = validation_;
   few.resize(std::min(few.size(), kGaugeMaps));
-  gauge_ = Label(few, Seed(kGauge), RankPath("gauge"));
+  gauge_ = Label("gauge_" + RoundName(round_), few, Seed(kGauge));
   labels_.clear();
   for (int round = std::max(0, round_ + 1 - config_.improvement.kept_rounds); round <= round_;
        ++round) {
-    std::vector<LabelledState> more = ReadLabels(RankPath(LabelName(round)));
+    std::vector<LabelledState> more = archive_.Read(RoundName(round));
     std::move(more.begin(), more.end(), std::back_inserter(labels_));
   }
 }
 
-std::vector<LabelledState> Trainer::Label(const std::vector<const ExplorationMap*>& maps,
-                                          std::uint64_t seed, const std::string& path) const {
+std::vector<LabelledState> Trainer::Label(const std::string& name,
+                                          const std::vector<const ExplorationMap*>& maps,
+                                          std::uint64_t seed) const {
   const Rollout rollout = RolloutOf(best_);
   LabelInputs inputs{config_.exploration, config_.policy, config_.labels, &sensor_, &rollout};
-  std::vector<LabelledState> labels = LabelMaps(maps, inputs, seed, [this](double share) {
-    report_("round " + std::to_string(round_ + 1) + ": measuring", share);
+  return archive_.Collect(name, maps, inputs, seed, [this](double share) {
+    report_("round " + RoundName(round_) + ": measuring", share);
   });
-  WriteLabels(labels, path);
-  return labels;
 }
 
 std::shared_ptr<const PolicyNetwork> Trainer::Learn() {
@@ -129,8 +131,7 @@ std::shared_ptr<const PolicyNetwork> Trainer::Learn() {
     now.gain = config_.labels.length_scale * MeanGain(gauge_, levels, sac);
     now.travel = now.share = std::numeric_limits<double>::quiet_NaN();
     curve_.push_back(now);
-    report_("round " + std::to_string(round_ + 1) + ": learning",
-            static_cast<double>(point) / kPoints);
+    report_("round " + RoundName(round_) + ": learning", static_cast<double>(point) / kPoints);
   }
   return std::make_shared<PolicyNetwork>(PolicySettings{config_.policy, learning.actor},
                                          sac.actor_parameters());

@@ -60,14 +60,21 @@ TEST_F(TrainerTest, AnInterruptedTrainingComesOutTheSame) {
   whole.Run();
 
   const std::string folder = Folder("broken");
-  Trainer broken = Make(folder, [](const std::string& what, double) {
-    if (what == "round 2: learning") throw std::runtime_error("switched off");
+  for (const std::string when : {"round 1: learning", "round 2: learning"}) {
+    Trainer broken = Make(folder, [&](const std::string& what, double) {
+      if (what == when) throw std::runtime_error("switched off");
+    });
+    if (when[6] == '2') broken.Resume();
+    EXPECT_THROW(broken.Run(), std::runtime_error);
+  }
+  bool measured_anew = false;
+  Trainer resumed = Make(folder, [&](const std::string& what, double) {
+    measured_anew = measured_anew || what == "round 2: measuring";
   });
-  EXPECT_THROW(broken.Run(), std::runtime_error);
-  Trainer resumed = Make(folder, quiet);
   resumed.Resume();
   resumed.Run();
 
+  EXPECT_FALSE(measured_anew);
   ASSERT_EQ(resumed.curve().size(), whole.curve().size());
   for (std::size_t i = 0; i < whole.curve().size(); ++i) {
     ExpectSame(whole.curve()[i].loss, resumed.curve()[i].loss);
@@ -84,6 +91,21 @@ TEST_F(TrainerTest, GoesOnWithTheSameConfigurationOnly) {
   Make(folder, quiet).Run();
   config_.labels.wander = 0.5;
   EXPECT_THROW(Make(folder, quiet).Resume(), InputError);
+}
+
+TEST_F(TrainerTest, LearnsNothingFromAnEarlierTraining) {
+  const auto quiet = [](const std::string&, double) {};
+  config_.improvement.rounds = 1;
+  const std::string folder = Folder("used");
+  config_.labels.share = 0.6;
+  Make(folder, quiet).Run();
+  config_.labels.share = 0.2;
+  Trainer again = Make(folder, quiet);
+  again.Run();
+  Trainer fresh = Make(Folder("fresh"), quiet);
+  fresh.Run();
+  EXPECT_EQ(again.curve().back().states, fresh.curve().back().states);
+  ExpectSame(again.curve().back().gain, fresh.curve().back().gain);
 }
 
 TEST_F(TrainerTest, NeedsMapsToLearnFrom) {

@@ -7,6 +7,7 @@
 
 #include "hv_explore_sac/policy/policy_network.h"
 #include "hv_explore_sac/train/curve.h"
+#include "hv_explore_sac/train/label_archive.h"
 #include "hv_explore_sac/train/ranks.h"
 #include "hv_explore_sac/train/train_config.h"
 #include "hv_explore_sac/train/validation.h"
@@ -20,7 +21,7 @@ namespace hv::explore {
 /// policy.
 ///
 /// The folder holds policy.bin (the best so far, as the planner `sac` takes it), curve.csv, and
-/// what Resume() goes on from: state.bin, labels_<round>_<rank>.bin, sac.bin, replay_<rank>.bin.
+/// what Resume() goes on from: state.bin, labels_<rank>_*.bin, sac.bin, replay_<rank>.bin.
 /// What comes out is then the same as without the break. Not thread-safe; uses TBB's threads.
 class Trainer {
  public:
@@ -31,7 +32,8 @@ class Trainer {
   Trainer(const TrainConfig& config, const std::vector<ExplorationMap>& maps, std::string folder,
           Ranks& ranks, Report report);
 
-  /// Goes on from the folder's last finished round, or the last time that SAC's policy was tried.
+  /// Goes on from the folder's last finished round with the labels made since, or from the last
+  /// time that SAC's policy was tried.
   /// Throws InputError when there is none.
   void Resume();
   /// All that is left.
@@ -48,8 +50,9 @@ class Trainer {
   void RunRound();
   Rollout RolloutOf(std::shared_ptr<const PolicyNetwork> network) const;
   void CollectLabels();
-  std::vector<LabelledState> Label(const std::vector<const ExplorationMap*>& maps,
-                                   std::uint64_t seed, const std::string& path) const;
+  std::vector<LabelledState> Label(const std::string& name,
+                                   const std::vector<const ExplorationMap*>& maps,
+                                   std::uint64_t seed) const;
   std::shared_ptr<const PolicyNetwork> Learn();
   void FineTune();
   std::unique_ptr<FineTuner> MakeFineTuner();
@@ -63,6 +66,7 @@ class Trainer {
   RaySensor sensor_;
   std::string folder_;
   Ranks& ranks_;
+  LabelArchive archive_;
   Report report_;
   std::vector<const ExplorationMap*> training_;
   std::vector<const ExplorationMap*> validation_;
