@@ -23,6 +23,7 @@ class Drives:
     response_s: np.ndarray    # of scenarios; -1: none
     recoveries: np.ndarray
     octree_nodes: np.ndarray
+    octree_growth: float      # most nodes in the second half of a run over those in the first
     worst_place_m: np.ndarray
     reasons: list[str]        # of failures
     plan_ms: np.ndarray
@@ -46,6 +47,12 @@ def read_rows(paths: list[Path]) -> list[dict[str, str]]:
     return rows
 
 
+def growth(folder: Path) -> float:
+    nodes = [float(row["octree_nodes"]) for row in read_rows([folder / "trials.csv"])]
+    half = len(nodes) // 2
+    return max(nodes[half:]) / max(nodes[:half]) if half > 0 else 1.0
+
+
 def read_drives(folders: list[Path]) -> Drives:
     trials = read_rows([folder / "trials.csv" for folder in folders])
     cycles = read_rows([folder / "cycles.csv" for folder in folders])
@@ -54,7 +61,8 @@ def read_drives(folders: list[Path]) -> Drives:
     above_zero = lambda values: values[values > 0.0]
     return Drives(of_trials("reached"), of_trials("collisions"), of_trials("hit_by_people"),
                   of_trials("driven_m"), of_trials("optimal_m"), of_trials("response_s"),
-                  of_trials("recoveries"), of_trials("octree_nodes"), of_trials("worst_place_m"),
+                  of_trials("recoveries"), of_trials("octree_nodes"),
+                  max(growth(folder) for folder in folders), of_trials("worst_place_m"),
                   [row["reason"] for row in trials if row["reached"] == "0"],
                   above_zero(of_cycles("plan_ms")), of_cycles("control_ms"),
                   above_zero(of_cycles("update_ms")))
