@@ -81,6 +81,14 @@ void GlobalGrid::FindMovable() {
                                     statistics.at<int>(label, cv::CC_STAT_HEIGHT));
     return static_cast<std::uint8_t>(label > 0 && longest > most + 1e-6 ? 1 : 0);
   });
+  cv::Mat about;
+  cv::dilate(occupied, about, cv::Mat::ones(3, 3, CV_8U));
+  beside_.assign(saved_.size(), 0);
+  std::transform(
+      about.begin<std::uint8_t>(), about.end<std::uint8_t>(), saved_.begin(), beside_.begin(),
+      [](std::uint8_t near, std::int8_t cell) {
+        return static_cast<std::uint8_t>(near != 0 && !OccupancyGrid::IsOccupied(cell) ? 1 : 0);
+      });
 }
 
 /// Cells to add before and behind one axis, in whole steps; none where it would become too long.
@@ -114,6 +122,7 @@ void GlobalGrid::GrowToHold(const Vector2d& low, const Vector2d& high) {
   Move(grid_.cells, grid_, larger, OccupancyGrid::kUnknown);
   Move(saved_, grid_, larger, OccupancyGrid::kUnknown);
   Move(fixed_, grid_, larger, std::uint8_t{0});
+  Move(beside_, grid_, larger, std::uint8_t{0});
   Move(run_, grid_, larger, std::int8_t{0});
   larger.cells = std::move(grid_.cells);
   grid_ = std::move(larger);
@@ -179,6 +188,7 @@ void GlobalGrid::TakeCell(const Vector2i& at, bool occupied, bool near) {
   const std::size_t index = IndexIn(grid_.width, at.x(), at.y());
   const bool was_saved = OccupancyGrid::IsOccupied(saved_[index]);
   if (was_saved && !occupied && !near) return;
+  if (beside_[index] != 0 && occupied) return;
   const int run = run_[index];
   const int next = occupied ? std::min(config_.mark_views, std::max(0, run) + 1)
                             : std::max(-config_.clear_views, std::min(0, run) - 1);

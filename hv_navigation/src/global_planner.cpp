@@ -7,19 +7,16 @@
 
 #include "free_space.h"
 #include "heading_lattice.h"
-#include "hv_navigation/grid_search.h"
 #include "path_rounding.h"
+#include "route_finder.h"
+#include "route_threading.h"
 #include "tree_search.h"
 
 namespace hv::navigation {
 namespace {
 
-constexpr double kBand_m = 1.5;  // about the shortest route, for the one with room
 constexpr double kGuideSpacing_m = 0.5;
-constexpr double kEnd_m = 1.0;        // about start and goal, where there may be no room to turn
 constexpr double kLookAhead_m = 1.0;  // over which the route's direction is taken
-
-using Cells = std::vector<Eigen::Vector2i>;
 
 /// One plan, step by step.
 class Planning {
@@ -32,7 +29,7 @@ class Planning {
         request_(request),
         tolerance_{request.goal_tolerance_m, request.yaw_tolerance},
         space_(grid, footprint, {config.clearance_weight, config.soft_clearance_m}),
-        search_(grid) {}
+        routes_(space_) {}
 
   GlobalPlan Run() {
     if (!CheckStart() || !CheckGoal() || !FindShortest()) return plan_;
@@ -98,22 +95,21 @@ class Planning {
     if (allowed(center)) {
       if (const auto pose = FreeYaw(request_.goal.position)) return pose;
     }
-    Cells cells = CellsNear(center);
-    for (const Eigen::Vector2i& cell : cells) {
+    for (const Eigen::Vector2i& cell : CellsNear(center)) {
       if (!allowed(cell)) continue;
       if (const auto pose = FreeYaw(grid_.CenterOf(cell))) return pose;
     }
     return std::nullopt;
   }
 
-  /// Cells within the tolerance, nearest first.
-  Cells CellsNear(const Eigen::Vector2i& center) const {
+  /// Those within the tolerance, nearest first.
+  std::vector<Eigen::Vector2i> CellsNear(const Eigen::Vector2i& center) const {
     const auto distance_m = [&](const Eigen::Vector2i& cell) {
       return (grid_.CenterOf(cell) - request_.goal.position).norm();
     };
     const int radius =
         static_cast<int>(std::floor(tolerance_.distance_m / grid_.grid().resolution_m));
-    Cells cells;
+    std::vector<Eigen::Vector2i> cells;
     for (int y = -radius; y <= radius; ++y) {
       for (int x = -radius; x <= radius; ++x) {
         const Eigen::Vector2i cell = center + Eigen::Vector2i(x, y);
@@ -142,87 +138,32 @@ class Planning {
   /// Whether the tolerance allows for a goal where the robot can turn.
   bool MoveGoalToRoom() {
     const auto goal = NearestGoal([this](const Eigen::Vector2i& cell) {
-      return search_.Reached(cell) && space_.IsFreeToTurn(grid_.CenterOf(cell));
+      return routes_.Reached(cell) && space_.IsFreeToTurn(grid_.CenterOf(cell));
     });
     if (!goal) return false;
     plan_.goal = *goal;
     return FindShortest();
   }
 
-  double InscribedFactor(const Eigen::Vector2i& cell) const {
-    const double needed_m = space_.NeededClearance(grid_.CenterOf(cell));
-    return grid_.ClearanceAt(cell) >= needed_m ? 1.0 : 0.0;
-  }
-
   bool FindShortest() {
     const Eigen::Vector2i start = grid_.CellOf(request_.start.position);
-    const auto factor = [this](const Eigen::Vector2i& cell) {
-      return cell == grid_.CellOf(plan_.goal.position) ? 1.0 : InscribedFactor(cell);
-    };
-    if (!search_.Run(start, grid_.CellOf(plan_.goal.position), factor)) {
-      const auto goal = NearestGoal([this](const auto& cell) { return search_.Reached(cell); });
+    if (!routes_.Connect(start, grid_.CellOf(plan_.goal.position))) {
+      const auto goal = NearestGoal([this](const auto& cell) { return routes_.Reached(cell); });
       if (!goal) {
         return Fail(PlanOutcome::kNoConnection,
                     "no way leads to the goal that is wide enough for the robot");
       }
       plan_.goal = *goal;
     }
-    shortest_ = search_.RouteTo(grid_.CellOf(plan_.goal.position));
+    routes_.Take(grid_.CellOf(plan_.goal.position));
     const Eigen::Vector2d way = plan_.goal.position - request_.start.position;
-    plan_.grid_length_m = std::max(way.norm(), RouteLength(shortest_, grid_.grid().resolution_m));
+    plan_.grid_length_m =
+        std::max(way.norm(), RouteLength(routes_.shortest(), grid_.grid().resolution_m));
     return true;
   }
 
-  std::vector<std::uint8_t> BandMask() const {
-    const OccupancyGrid& cells = grid_.grid();
-    std::vector<std::uint8_t> mask(cells.cells.size(), 0);
-    const int radius = static_cast<int>(std::ceil(kBand_m / cells.resolution_m));
-    for (std::size_t i = 0; i < shortest_.size(); ++i) {
-      const bool stamp = i % static_cast<std::size_t>(std::max(1, radius / 4)) == 0;
-      if (!stamp && i + 1 != shortest_.size()) continue;
-      const Eigen::Vector2i low = (shortest_[i].array() - radius).max(0);
-      const Eigen::Vector2i high =
-          (shortest_[i].array() + radius).min(Eigen::Array2i(cells.width, cells.height) - 1);
-      for (int y = low.y(); y <= high.y(); ++y) {
-        const auto row = mask.begin() + static_cast<std::ptrdiff_t>(y) * cells.width;
-        std::fill(row + low.x(), row + high.x() + 1, std::uint8_t{1});
-      }
-    }
-    return mask;
-  }
-
-  /// A route near the shortest one that keeps away from obstacles.
-  Cells RoomyRoute(const FreeSpace& space) {
-    const std::vector<std::uint8_t> mask = BandMask();
-    const Eigen::Vector2i goal = grid_.CellOf(plan_.goal.position);
-    const auto factor = [&](const Eigen::Vector2i& cell) {
-      const std::ptrdiff_t index =
-          static_cast<std::ptrdiff_t>(cell.y()) * grid_.grid().width + cell.x();
-      if (mask[static_cast<std::size_t>(index)] == 0) return 0.0;
-      const double open = cell == goal ? 1.0 : InscribedFactor(cell);
-      return open * (1.0 + space.Nearness(grid_.ClearanceAt(cell)));
-    };
-    return search_.Run(shortest_.front(), goal, factor) ? search_.RouteTo(goal) : shortest_;
-  }
-
-  /// The shortest route with room to turn everywhere but about the start and the goal; empty when
-  /// there is none.
-  Cells RouteToTurn() {
-    const Eigen::Vector2i goal = grid_.CellOf(plan_.goal.position);
-    const auto is_end = [this](const Eigen::Vector2i& cell) {
-      const Eigen::Vector2d at = grid_.CenterOf(cell);
-      return (at - request_.start.position).norm() < kEnd_m ||
-             (at - plan_.goal.position).norm() < kEnd_m;
-    };
-    const auto factor = [&](const Eigen::Vector2i& cell) {
-      if (grid_.ClearanceAt(cell) >= space_.circumscribed_m() || cell == goal) return 1.0;
-      return is_end(cell) ? InscribedFactor(cell) : 0.0;
-    };
-    return search_.Run(shortest_.front(), goal, factor) ? search_.RouteTo(goal) : Cells();
-  }
-
   /// Poses along a route, from the start to the goal.
-  std::vector<PlanarPose> GuideAlong(const Cells& route) const {
+  std::vector<PlanarPose> GuideAlong(const Route& route) const {
     const double cell_m = grid_.grid().resolution_m;
     const auto spacing = static_cast<std::size_t>(std::max(1.0, kGuideSpacing_m / cell_m));
     const auto ahead = static_cast<std::size_t>(std::max(1.0, kLookAhead_m / cell_m));
@@ -248,8 +189,8 @@ class Planning {
   void PlanWith(double weight) {
     FreeSpace space = space_;
     space.SetCost({weight, config_.soft_clearance_m});
-    PoseChain chain = SearchTree(space, GuideAlong(RoomyRoute(space)), config_);
-    if (chain.poses.empty()) chain = PlanWithRoom(space);
+    PoseChain chain = SearchTree(space, GuideAlong(routes_.Roomy(space)), config_);
+    if (chain.poses.empty()) chain = PlanThroughNarrows(space);
     if (chain.poses.empty()) chain = PlanByLattice(space);
     if (chain.poses.empty()) return FailNarrow();
     RoundingRules rules{config_.corner_radius_m, config_.path_step_m, !AnyYaw()};
@@ -268,18 +209,35 @@ class Planning {
     }
   }
 
-  /// The shortest way may lead where the robot fits through but cannot turn; another may not.
-  PoseChain PlanWithRoom(const FreeSpace& space) {
-    const Cells route = RouteToTurn();
-    return route.empty() ? PoseChain() : SearchTree(space, GuideAlong(route), config_);
+  /// Closes, one after the other, narrow stretches that the robot does not get through, until a way
+  /// is left that it does.
+  PoseChain PlanThroughNarrows(const FreeSpace& space) {
+    constexpr int kTries = 12;
+    const LatticeRules rules{config_.lattice_expansions / kTries, config_.turn_cost_m};
+    for (int i = 0; i < kTries; ++i) {
+      const Route route = routes_.Open();
+      if (route.empty()) break;
+      const ThreadedRoute way = ThreadRoute(space, request_.start, plan_.goal, route, rules);
+      if (!way.poses.empty()) return Improved(space, way.poses);
+      routes_.Close(way.stuck);
+    }
+    return {};
   }
 
   PoseChain PlanByLattice(const FreeSpace& space) const {
     const LatticeRules rules{config_.lattice_expansions, config_.turn_cost_m};
     const std::vector<PlanarPose> guide = SearchLattice(space, request_.start, plan_.goal, rules);
-    if (guide.empty()) return {};
-    PoseChain better = SearchTree(space, guide, config_);
-    return better.poses.empty() ? PoseChain{guide, 0.0} : better;
+    return guide.empty() ? PoseChain() : Improved(space, guide);
+  }
+
+  /// A better chain than one that was found by steps, if there is one.
+  PoseChain Improved(const FreeSpace& space, const std::vector<PlanarPose>& chain) const {
+    PoseChain better = SearchTree(space, chain, config_);
+    if (!better.poses.empty()) return better;
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      if (!space.MotionIsFree(chain[i - 1], chain[i])) return {};
+    }
+    return {chain, 0.0};
   }
 
   const GlobalPlannerConfig& config_;
@@ -291,8 +249,7 @@ class Planning {
     double yaw;  // rad
   } tolerance_;  // of the goal
   FreeSpace space_;
-  GridSearch search_;
-  Cells shortest_;
+  RouteFinder routes_;
   GlobalPlan plan_;
 };
 

@@ -59,6 +59,7 @@ class Lattice {
     step_m_ = cell_m * std::max(1.0, std::round(kLeastStep_m / cell_m));
     to_goal_.Flood(space.grid().CellOf(goal.position), [this](const Eigen::Vector2i& cell) {
       const Eigen::Vector2d center = space_.grid().CenterOf(cell);
+      if ((center - goal_.position).norm() > rules_.reach_m) return 0.0;
       return space_.grid().ClearanceAt(cell) >= space_.NeededClearance(center) ? 1.0 : 0.0;
     });
   }

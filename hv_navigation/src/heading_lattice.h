@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "free_space.h"
@@ -8,7 +9,8 @@ namespace hv::navigation {
 
 struct LatticeRules {
   int expansions = 200000;
-  double turn_cost_m = 0.15;  ///< of a radian
+  double turn_cost_m = 0.15;                                 ///< of a radian
+  double reach_m = std::numeric_limits<double>::infinity();  ///< no farther from the goal
 };
 
 /// A* over places and sixteen headings with the exact footprint: finds ways where the robot must

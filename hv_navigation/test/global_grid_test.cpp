@@ -52,6 +52,18 @@ OccupancyGrid Room() {
 
 OccupancyGrid FreeView() { return Filled(0.1, {-3.0, -3.0}, 60, 60, OccupancyGrid::kFree); }
 
+/// What is seen of a wall at y < 0.2 m of the map from a place within it.
+OccupancyGrid WallView(const PlanarPose& T_map_odom) {
+  OccupancyGrid view = FreeView();
+  for (int y = 0; y < view.height; ++y) {
+    for (int x = 0; x < view.width; ++x) {
+      const bool in_wall = (T_map_odom * view.CenterOf({x, y})).y() < 0.2;
+      if (in_wall) view.At(x, y) = OccupancyGrid::kOccupied;
+    }
+  }
+  return view;
+}
+
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(GlobalGridTest, WithoutViewsItIsTheSavedMap) {
@@ -59,6 +71,19 @@ TEST(GlobalGridTest, WithoutViewsItIsTheSavedMap) {
   const GlobalGrid global({}, room);
   EXPECT_EQ(global.grid().cells, room.cells);
   EXPECT_EQ(global.grid().origin, room.origin);
+}
+
+TEST(GlobalGridTest, WallsGrowNoThicker) {
+  OccupancyGrid hall = Filled(0.1, {0.0, 0.0}, 100, 80, OccupancyGrid::kFree);
+  FillBox(hall, {0.0, 0.0}, {10.0, 0.2}, OccupancyGrid::kOccupied);
+  const OccupancyGrid view = WallView({{5.0, 1.5}, 0.3});
+  GlobalGrid global({}, hall);
+  for (int i = 0; i < 10; ++i) global.Update(view, {{5.02, 1.54}, 0.31}, {0.0, 0.0});
+  const Eigen::Vector2i low = global.grid().CellOf({2.5, 0.25});
+  const Eigen::Vector2i high = global.grid().CellOf({7.5, 0.85});
+  for (int y = low.y(); y <= high.y(); ++y) {
+    for (int x = low.x(); x <= high.x(); ++x) EXPECT_EQ(global.grid().At(x, y), 0) << x << ' ' << y;
+  }
 }
 
 TEST(GlobalGridTest, ObstaclesAreAddedWhereTheyAre) {

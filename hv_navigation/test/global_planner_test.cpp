@@ -320,6 +320,27 @@ TEST(GlobalPlannerTest, GoesAroundWhereTheShortestWayIsTooNarrowToTurn) {
   EXPECT_GT(plan.length_m, 11.0);
 }
 
+TEST(GlobalPlannerTest, TakesTheDoorThatItFitsThrough) {
+  // Between two halls: an alley of 0.7 m to be entered and left aside, through which a circle gets,
+  // and far away a door of 0.8 m in line, in which the robot cannot turn either.
+  OccupancyGrid cells = EmptyCells(400, 400, 0.1);
+  FenceCells(cells);
+  FillCells(cells, {20.0, 0.0}, {20.1, 40.0});
+  FillCells(cells, {20.8, 0.0}, {20.9, 40.0});
+  FillCells(cells, {20.0, 2.0}, {20.1, 2.7}, OccupancyGrid::kFree);
+  FillCells(cells, {20.8, 3.0}, {20.9, 3.7}, OccupancyGrid::kFree);
+  FillCells(cells, {20.0, 30.0}, {20.9, 30.8}, OccupancyGrid::kFree);
+  const ClearanceGrid grid = Clearances(cells);
+  PlanRequest request;
+  request.start = {{18.0, 2.4}, 0.0};
+  request.goal = {{23.0, 2.4}, 0.0};
+  const GlobalPlan plan = GlobalPlanner({}, Footprint()).Plan(grid, request);
+  ASSERT_TRUE(plan.Found()) << plan.reason;
+  EXPECT_LT(plan.grid_length_m, 10.0);
+  EXPECT_GT(plan.length_m, 50.0);
+  ExpectDrivable(plan.path, grid, Footprint());
+}
+
 TEST(GlobalPlannerTest, MovesAGoalToWhereTheRobotCanJustTurn) {
   // A blind alley, 1.1 m wide: the robot can turn in its middle only.
   OccupancyGrid cells = EmptyCells(60, 13, 0.1);

@@ -20,7 +20,8 @@ namespace hv::navigation {
 /// `clear_views` views in a row that show free space. What the saved map holds is taken away only
 /// where it is movable, that is small and apart from everything else, and only by views from near.
 /// Walls, and what stands against them, stay whatever is seen through them: an error of
-/// localisation of a few centimetres must not open a wall.
+/// localisation of a few centimetres must not open a wall. Nor must it make one thicker: what is
+/// seen in a cell next to an obstacle of the saved map is that obstacle.
 ///
 /// Deterministic. Not thread-safe.
 class GlobalGrid {
@@ -56,9 +57,10 @@ class GlobalGrid {
 
   GlobalGridConfig config_;
   OccupancyGrid grid_;
-  std::vector<std::int8_t> saved_;   ///< of the saved map; unknown elsewhere
-  std::vector<std::uint8_t> fixed_;  ///< 1: an obstacle of the saved map that stays
-  std::vector<std::int8_t> run_;     ///< views in a row with an obstacle, negative: without
+  std::vector<std::int8_t> saved_;    ///< of the saved map; unknown elsewhere
+  std::vector<std::uint8_t> fixed_;   ///< 1: an obstacle of the saved map that stays
+  std::vector<std::uint8_t> beside_;  ///< 1: next to an obstacle of the saved map
+  std::vector<std::int8_t> run_;      ///< views in a row with an obstacle, negative: without
   Changes changes_;
   std::size_t left_out_ = 0;
 };
