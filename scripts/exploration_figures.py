@@ -60,7 +60,7 @@ class Share:
 def share_of(runs: Runs, other: Runs) -> Share:
     """Paired: maps are drawn anew (bootstrap), each with the travels of both."""
     if runs.maps != other.maps:
-        raise SystemExit("exploration_table: results of other maps are among them; run with --fresh")
+        raise SystemExit("exploration_table: there are results of other maps: run with --fresh")
     count = len(runs.maps)
     drawn = np.random.default_rng(1).integers(0, count, (RESAMPLES, count))
     shares = runs.travel[drawn].sum(axis=1) / other.travel[drawn].sum(axis=1)

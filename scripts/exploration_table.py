@@ -106,9 +106,11 @@ def late_known(drives: list[Drive], key: str) -> str:
 
 
 def of_utility(drives: list[Drive], planners: dict[str, list[Drive]]) -> str:
-    """Of the distance of `utility`, from the same starts."""
+    """Of the distance of `utility`, from the same starts, where all have come to the end."""
     others = planners.get("utility", [])
     if drives is others or [drive.start for drive in drives] != [drive.start for drive in others]:
+        return "-"
+    if any(100.0 * drive.summary["share"] < EXPLORED_PERCENT for drive in [*drives, *others]):
         return "-"
     return f"{mean_of(drives, 'travelled_m') / mean_of(others, 'travelled_m'):.2f}"
 
