@@ -60,8 +60,8 @@ wanted() {
   return 1
 }
 
-# in_background COMMAND...: as soon as there is room for it. It ends with this script, also by Ctrl-C:
-# in a process group of its own it can be stopped with all that it has started
+# in_background COMMAND...: as soon as there is room for it. In a process group of its own, so that
+# it can be stopped, with all that it has started, when this script ends by Ctrl-C
 in_background() {
   while (($(jobs -rp | wc -l) >= processes)); do wait -n || true; done
   set -m
