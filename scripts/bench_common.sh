@@ -10,6 +10,8 @@ bench=$(basename "$0" .sh)
 only=()   # names that are wanted; empty: all
 run=yes   # empty: only the table
 table=()  # arguments of the script that prints it
+processes=1  # in the background at once
+started=()   # their numbers
 declare -A values=([--table-only]=0 [--peer]=2)  # of options; others have one
 
 say() { echo "$bench: $*" >&2; }
@@ -30,7 +32,7 @@ parse_options() {
     needs=${values[$1]:-1}
     (($# > needs)) || fail "$1 needs $needs argument(s) (--help lists the options)"
     case $1 in
-      --data) data=$2 ;;
+      --data) [ -v data ] || fail "there is nothing to generate, so no --data"; data=$2 ;;
       --out) out=$2 ;;
       --only) only+=("$2") ;;
       --peer) table+=(--peer "$2" "$3") ;;
@@ -58,7 +60,31 @@ wanted() {
   return 1
 }
 
+# in_background COMMAND...: as soon as there is room for it. In a process group of its own, so that
+# it can be stopped, with all that it has started, when this script ends by Ctrl-C
+in_background() {
+  while (($(jobs -rp | wc -l) >= processes)); do wait -n || true; done
+  set -m
+  "$@" &
+  set +m
+  started+=("$!")
+}
+
+stop_background() {
+  local group
+  for group in $(jobs -rp); do kill -- "-$group" 2>/dev/null || true; done
+}
+trap stop_background EXIT
+
+# finish_background: waits for all; fails when one has failed
+finish_background() {
+  local number failed=
+  for number in "${started[@]}"; do wait "$number" || failed=yes; done
+  [ -z "$failed" ] || fail "see the messages above"
+}
+
 # print_table SCRIPT [ARGUMENT...]: with what has been gathered in `table`
 print_table() {
-  exec /usr/bin/python3 -B "$root/scripts/$1" --results "$out" --data "$data" "${@:2}" "${table[@]}"
+  exec /usr/bin/python3 -B "$root/scripts/$1" --results "$out" ${data:+--data "$data"} "${@:2}" \
+    "${table[@]}"
 }

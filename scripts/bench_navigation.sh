@@ -73,19 +73,16 @@ make_map() {
   rm -rf "$folder/recording" "$folder/run"
 }
 
-# drive NAME RESULT SEED GOALS [OPTION...]: in the background, when there is room for it
+# drive NAME RESULT SEED GOALS [OPTION...]
 drive() {
-  while (($(jobs -rp | wc -l) >= processes)); do wait -n || fail "see the messages above"; done
   local folder=$out/$1/$2
   say "$1: $2, $4 goals"
   mkdir -p "$folder"
-  {
-    "$programs/hv_replay/hv_navigate" --world "${world_of[$1]:-$1}" --world-seed "$world_seed" \
-      --map "$data/$1/map" --map-truth "$data/$1/truth.tum" --config "$config" --seed "$3" \
-      --goals "$4" --point-share "$share" --threads 1 --out "$folder" "${@:5}" \
-      >"$folder/log.txt" 2>&1 ||
-      { say "hv_navigate failed: $(tail -n 1 "$folder/log.txt")"; exit 1; }
-  } &
+  "$programs/hv_replay/hv_navigate" --world "${world_of[$1]:-$1}" --world-seed "$world_seed" \
+    --map "$data/$1/map" --map-truth "$data/$1/truth.tum" --config "$config" --seed "$3" \
+    --goals "$4" --point-share "$share" --threads 1 --out "$folder" "${@:5}" \
+    >"$folder/log.txt" 2>&1 ||
+    fail "hv_navigate failed: $(tail -n 1 "$folder/log.txt")"
 }
 
 mkdir -p "$data" "$out"
@@ -102,13 +99,15 @@ done
 for world in "${worlds[@]}"; do
   read -r name _ <<<"$world"
   wanted "$name" && [ -n "$run" ] || continue
-  for seed in "${seeds[@]}"; do drive "$name" "random_$seed" "$seed" "$goals"; done
+  for seed in "${seeds[@]}"; do
+    in_background drive "$name" "random_$seed" "$seed" "$goals"
+  done
 done
 for entry in "${scenarios[@]}"; do
   read -r name scenario count <<<"$entry"
   wanted "$name" && [ -n "$run" ] || continue
-  drive "$name" "$scenario" 11 "$count" --scenario "$scenario"
+  in_background drive "$name" "$scenario" 11 "$count" --scenario "$scenario"
 done
-while (($(jobs -rp | wc -l) > 0)); do wait -n || fail "see the messages above"; done
+finish_background
 
 print_table navigation_table.py

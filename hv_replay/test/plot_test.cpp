@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "hv_core/error.h"
+#include "hv_core/file_io.h"
 #include "hv_replay/curve_plot.h"
 #include "hv_replay/drive_picture.h"
 #include "hv_replay/map_picture.h"
@@ -202,6 +203,24 @@ TEST_F(PlotFile, CurvesLeaveOutWhatIsNotFinite) {
   const cv::Mat image = cv::imread(path_);
   ASSERT_FALSE(image.empty());
   EXPECT_GT(DrawnPixels(image), 1000);
+}
+
+TEST_F(PlotFile, CurvesComeFromATableInTheirOrder) {
+  const std::string table = testing::TempDir() + "/hv_plot_test.csv";
+  WriteFile(table, {"panel,curve,x,y\nb,one,0,1\na,one,0,2\nb,two,0,3\nb,one,1,4.5\n"});
+  const std::vector<CurvePanel> panels = ReadCurvePanels(table);
+  ASSERT_EQ(panels.size(), 2U);
+  EXPECT_EQ(panels[0].title, "b");
+  ASSERT_EQ(panels[0].curves.size(), 2U);
+  EXPECT_EQ(panels[0].curves[0].name, "one");
+  EXPECT_EQ(panels[0].curves[0].x, (std::vector<double>{0, 1}));
+  EXPECT_EQ(panels[0].curves[0].y, (std::vector<double>{1, 4.5}));
+  for (const char* bad : {"panel,curve\n", "panel,curve,x,y\n", "panel,curve,x,y\nb,one,0\n",
+                          "panel,curve,x,y\nb,one,0,1,2\n"}) {
+    WriteFile(table, {bad});
+    EXPECT_THROW(ReadCurvePanels(table), InputError) << bad;
+  }
+  std::remove(table.c_str());
 }
 
 }  // namespace

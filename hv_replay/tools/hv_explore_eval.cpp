@@ -29,6 +29,7 @@ struct Arguments {
   std::string out;
   std::string paths;
   std::string config;
+  int last = 0;
   int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   bool no_loop_guard = false;
   bool json = false;
@@ -38,6 +39,8 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--maps", arguments.maps,
                  "tiles text file, folder of PNG or PGM, or map_server YAML")
       ->required();
+  app.add_option("--last", arguments.last, "only so many maps from the end; else all")
+      ->check(CLI::PositiveNumber);
   app.add_option("--planner", arguments.planners,
                  "sac, utility, nearest, ratio, tour, branch, oracle; several with commas")
       ->delimiter(',')
@@ -164,6 +167,16 @@ hv::explore::PlannerFactory MakerOf(const Arguments& arguments) {
   };
 }
 
+std::vector<ExplorationMap> ReadMaps(const Arguments& arguments) {
+  std::vector<ExplorationMap> maps = hv::explore::ReadExplorationMaps(arguments.maps);
+  if (arguments.last > static_cast<int>(maps.size())) {
+    throw hv::InputError("--last " + std::to_string(arguments.last) + ": " + arguments.maps +
+                         " holds only " + std::to_string(maps.size()) + " map(s)");
+  }
+  if (arguments.last > 0) maps.erase(maps.begin(), maps.end() - arguments.last);
+  return maps;
+}
+
 int Run(const Arguments& arguments) {
   EvaluationConfig config;
   if (!arguments.config.empty()) {
@@ -173,7 +186,7 @@ int Run(const Arguments& arguments) {
   config.threads = arguments.threads;
   if (arguments.no_loop_guard) config.guard.enabled = false;
   config.make_planner = MakerOf(arguments);
-  const std::vector<ExplorationMap> maps = hv::explore::ReadExplorationMaps(arguments.maps);
+  const std::vector<ExplorationMap> maps = ReadMaps(arguments);
   std::vector<RunResult> results;
   {
     hv::replay::ProgressLine line("exploring");

@@ -20,6 +20,10 @@ struct CurvePanel {
   std::vector<NamedCurve> curves;
 };
 
+/// Reads diagrams from a CSV file with the header `panel,curve,x,y`, in the order in which panels
+/// and curves first appear; a panel's name is its title. Throws InputError, naming the line.
+std::vector<CurvePanel> ReadCurvePanels(const std::string& path);
+
 /// Draws diagrams below each other. The format follows from the ending of `path`. Throws InputError
 /// when it cannot be written.
 void PlotCurves(const std::vector<CurvePanel>& panels, const std::string& title,

@@ -1,9 +1,15 @@
 #include "hv_replay/curve_plot.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <sstream>
 
 #include "axes.h"
 #include "canvas.h"
+#include "hv_core/error.h"
+#include "hv_core/file_io.h"
 
 namespace hv::replay {
 namespace {
@@ -39,6 +45,34 @@ Range Widened(const std::vector<double>& values) {
   return {range.low - margin, range.high + margin};
 }
 
+/// The one whose `name` it is, appended when there is none.
+template <typename Thing>
+Thing& Named(std::string Thing::*name, const std::string& wanted, std::vector<Thing>& things) {
+  const auto found = std::find_if(things.begin(), things.end(),
+                                  [&](const Thing& thing) { return thing.*name == wanted; });
+  if (found != things.end()) return *found;
+  Thing thing;
+  thing.*name = wanted;
+  return things.emplace_back(std::move(thing));
+}
+
+bool AddRow(const std::string& line, std::vector<CurvePanel>& panels) {
+  std::istringstream row(line);
+  std::array<std::string, 2> names;
+  for (std::string& name : names) std::getline(row, name, ',');
+  std::string numbers;
+  std::getline(row, numbers);
+  double x = 0.0;
+  double y = 0.0;
+  char more = 0;
+  if (std::sscanf(numbers.c_str(), "%lf,%lf%c", &x, &y, &more) != 2) return false;
+  CurvePanel& panel = Named(&CurvePanel::title, names[0], panels);
+  NamedCurve& curve = Named(&NamedCurve::name, names[1], panel.curves);
+  curve.x.push_back(x);
+  curve.y.push_back(y);
+  return true;
+}
+
 void DrawPanel(Canvas& canvas, const CurvePanel& panel, const PixelRect& area) {
   std::vector<NamedCurve> curves;
   std::vector<double> x;
@@ -59,6 +93,22 @@ void DrawPanel(Canvas& canvas, const CurvePanel& panel, const PixelRect& area) {
 }
 
 }  // namespace
+
+std::vector<CurvePanel> ReadCurvePanels(const std::string& path) {
+  std::istringstream lines(ReadFile(path));
+  std::string line;
+  std::getline(lines, line);
+  if (line != "panel,curve,x,y") throw InputError(path + ": line 1: `panel,curve,x,y` is expected");
+  std::vector<CurvePanel> panels;
+  for (int number = 2; std::getline(lines, line); ++number) {
+    if (!AddRow(line, panels)) {
+      throw InputError(path + ": line " + std::to_string(number) +
+                       ": two names and two numbers are expected");
+    }
+  }
+  if (panels.empty()) throw InputError(path + ": holds no points");
+  return panels;
+}
 
 void PlotCurves(const std::vector<CurvePanel>& panels, const std::string& title,
                 const std::string& path) {
