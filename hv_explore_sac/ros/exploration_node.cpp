@@ -7,6 +7,7 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include "hv_core/config.h"
+#include "hv_explore_sac/policy/planner_maker.h"
 #include "hv_ros/conversions.h"
 #include "hv_ros/message_checks.h"
 #include "hv_ros/newest_transform.h"
@@ -25,7 +26,9 @@ constexpr bool kLatched = true;
 ExplorationNode::ExplorationNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : parameters_(ReadParameters(private_nh)),
       listener_(transforms_, nh),
-      explorer_(parameters_.config.explorer, parameters_.size),
+      explorer_(parameters_.config.explorer, parameters_.size,
+                PlannerMakerOf(parameters_.config.explorer.choice.planner,
+                               parameters_.config.explorer.choice.weights)),
       navigation_(nh, parameters_.config.node.map_frame),
       server_(private_nh, parameters_.config.node.map_frame, transforms_),
       starts_by_itself_(parameters_.config.node.autostart),

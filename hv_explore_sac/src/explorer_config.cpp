@@ -7,17 +7,17 @@ namespace hv::explore {
 namespace {
 
 /// Planners that need no true map.
-std::string PlannersOfRobots() {
-  std::string names;
-  for (const std::string& name : PlannerNames()) {
-    if (name != "oracle") names += (names.empty() ? "" : ", ") + name;
-  }
+std::vector<std::string> PlannersOfRobots() {
+  std::vector<std::string> names = PlannerNames();
+  names.erase(std::remove(names.begin(), names.end(), "oracle"), names.end());
+  names.emplace_back(kLearnedPlanner);
   return names;
 }
 
-bool IsForRobots(const std::string& planner) {
-  const std::vector<std::string>& names = PlannerNames();
-  return planner != "oracle" && std::find(names.begin(), names.end(), planner) != names.end();
+std::string Listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
 }
 
 }  // namespace
@@ -43,7 +43,8 @@ void PlacesConfig::Validate(ConfigProblems& problems) const {
 }
 
 void ChoiceConfig::Describe(ConfigVisitor& visitor) {
-  visitor.Field("planner", planner, "nearest, utility, ratio, tour or branch: chooses goals");
+  visitor.Field("planner", planner, "nearest, utility, ratio, tour, branch or sac: chooses goals");
+  visitor.Field("weights", weights, "of the planner sac: a policy.bin of hv_explore_train, path");
   visitor.Field("utility_decay", utility_decay, "of the utility with the way [1/m]");
   visitor.Field("branch_decay", branch_decay, "of the utility along a branch [1/m]");
   visitor.Field("keep_goal", keep_goal, "how many times better another goal must be");
@@ -53,7 +54,11 @@ void ChoiceConfig::Describe(ConfigVisitor& visitor) {
 }
 
 void ChoiceConfig::Validate(ConfigProblems& problems) const {
-  problems.Require(IsForRobots(planner), "choice.planner", "must be one of " + PlannersOfRobots());
+  const std::vector<std::string> names = PlannersOfRobots();
+  problems.Require(std::find(names.begin(), names.end(), planner) != names.end(), "choice.planner",
+                   "must be one of " + Listed(names));
+  problems.Require(planner != kLearnedPlanner || !weights.empty(), "choice.weights",
+                   "must name the file of weights that the planner sac needs");
   problems.Require(utility_decay >= 0.0, "choice.utility_decay", "must not be negative");
   problems.Require(branch_decay >= 0.0, "choice.branch_decay", "must not be negative");
   problems.Require(keep_goal >= 1.0, "choice.keep_goal", "must be at least 1");

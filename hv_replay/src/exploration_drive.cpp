@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "hv_explore_sac/policy/planner_maker.h"
 #include "hv_replay/console.h"
 #include "hv_replay/drive_picture.h"
 #include "hv_replay/drive_start.h"
@@ -81,7 +82,9 @@ ExplorationDrive::ExplorationDrive(const SlamConfig& config, sim::World world,
       options_(options),
       shape_(simulation.robot.shape),
       world_(world),
-      explorer_(config.exploration.explorer, SizeOf(config.navigation.planning.footprint)),
+      explorer_(config.exploration.explorer, SizeOf(config.navigation.planning.footprint),
+                explore::PlannerMakerOf(config.exploration.explorer.choice.planner,
+                                        config.exploration.explorer.choice.weights)),
       coverage_log_(CreateDirectory(options.out) + "/coverage.csv",
                     "time_s,travelled_m,explored_m2,share,frontiers,goals,x,y"),
       goal_log_(options.out + "/goals.csv", "time_s,x,y,yaw,utility"),

@@ -1,6 +1,7 @@
 #include "hv_replay/parameter_page.h"
 
 #include "hv_core/config.h"
+#include "hv_explore_sac/train/train_config.h"
 #include "hv_replay/slam_config.h"
 
 namespace hv::replay {
@@ -9,8 +10,8 @@ namespace {
 constexpr const char* kIntroduction =
     R"(# Parameters
 
-Every key of a configuration file, as printed by `hv_parameters`. A file names only what differs
-from the defaults:
+Every key of a configuration file, as printed by `hv_parameters`; those of a
+[training](#training) come last. A file names only what differs from the defaults:
 
 ```yaml
 input:
@@ -29,8 +30,19 @@ named by `~config_file`. The effective configuration is saved as `config.yaml` b
 
 )";
 
+constexpr const char* kTraining = R"(
+## Training
+
+`hv_explore_train` reads a file of its own, such as `config/training/exploration.yaml`; the sections
+`exploration`, `planner` and `guard` are those of `hv_explore_eval --config` too.
+
+)";
+
 }  // namespace
 
-std::string ParameterPage() { return kIntroduction + ParameterTable<SlamConfig>(); }
+std::string ParameterPage() {
+  return kIntroduction + ParameterTable<SlamConfig>() + kTraining +
+         ParameterTable<explore::TrainConfig>();
+}
 
 }  // namespace hv::replay

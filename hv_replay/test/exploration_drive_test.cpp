@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "box_room.h"
+#include "hv_core/error.h"
 #include "hv_core/file_io.h"
 #include "simulated_robot.h"
+#include "small_policy.h"
 
 namespace hv::replay {
 namespace {
@@ -23,7 +25,10 @@ class ExplorationDriveTest : public testing::Test {
     lidar.mark_range_m = lidar.clear_range_m = 2.5;
     config_.exploration.explorer.goals.settle_s = 1.0;
   }
-  void TearDown() override { std::filesystem::remove_all(options_.out); }
+  void TearDown() override {
+    std::filesystem::remove_all(options_.out);
+    std::filesystem::remove(weights_);
+  }
 
   ExplorationDriveResult Run() {
     return ExplorationDrive(config_, sim::BoxRoom(7.0F, 5.0F), simulation_, options_).Run();
@@ -32,6 +37,7 @@ class ExplorationDriveTest : public testing::Test {
   SlamConfig config_ = SimulatedRobot();
   sim::LiveConfig simulation_;
   ExplorationDriveOptions options_;
+  const std::string weights_ = testing::TempDir() + "/hv_exploration_drive_test.bin";
 };
 
 TEST_F(ExplorationDriveTest, ExploresTheSameWayEachTime) {
@@ -62,6 +68,26 @@ TEST_F(ExplorationDriveTest, EndsInTimeAndReturns) {
   EXPECT_EQ(result.exploration.reason, "out of time");
   EXPECT_LT((result.line.back() - result.line.front()).norm(), 0.3);
   EXPECT_EQ(result.WhenKnown(1.01), nullptr);
+}
+
+TEST_F(ExplorationDriveTest, ExploresAsALearnedPolicySays) {
+  explore::RandomNetwork()->ToCheckpoint().Write(weights_);
+  config_.exploration.explorer.choice.planner = explore::kLearnedPlanner;
+  config_.exploration.explorer.choice.weights = weights_;
+  const ExplorationDriveResult result = Run();
+  EXPECT_TRUE(result.exploration.success) << result.exploration.reason;
+  EXPECT_GT(result.coverage.back().share, 0.95);
+}
+
+TEST_F(ExplorationDriveTest, DoesNotBeginWithWeightsThatCannotBeRead) {
+  config_.exploration.explorer.choice.planner = explore::kLearnedPlanner;
+  config_.exploration.explorer.choice.weights = weights_;
+  try {
+    Run();
+    FAIL() << "there is no " << weights_;
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find(weights_), 0U) << error.what();
+  }
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ namespace {
 struct Arguments : SimulationArguments {
   hv::replay::ExplorationDriveOptions options;
   std::string planner;
+  std::string weights;
   bool json = false;
 };
 
@@ -23,7 +24,8 @@ void Declare(CLI::App& app, Arguments& arguments) {
   hv::replay::ExplorationDriveOptions& options = arguments.options;
   DeclareSimulation(app, arguments);
   app.add_option("--planner", arguments.planner,
-                 "nearest, utility, ratio, tour or branch; else as configured");
+                 "nearest, utility, ratio, tour, branch or sac; else as configured");
+  app.add_option("--weights", arguments.weights, "of the planner `sac`; else as configured");
   app.add_option("--time-limit", options.time_limit_s, "simulated time after which it ends [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -36,8 +38,9 @@ void Declare(CLI::App& app, Arguments& arguments) {
 
 hv::replay::SlamConfig ConfigOf(const Arguments& arguments) {
   hv::replay::SlamConfig config = ReadSlamConfig(arguments);
-  if (arguments.planner.empty()) return config;
-  config.exploration.explorer.choice.planner = arguments.planner;
+  hv::explore::ChoiceConfig& choice = config.exploration.explorer.choice;
+  if (!arguments.planner.empty()) choice.planner = arguments.planner;
+  if (!arguments.weights.empty()) choice.weights = arguments.weights;
   hv::ConfigProblems problems;
   config.exploration.Validate(problems);
   if (!problems.lines().empty()) throw hv::InputError("--planner: " + problems.lines().front());

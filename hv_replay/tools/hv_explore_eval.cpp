@@ -11,7 +11,7 @@
 #include "hv_core/error.h"
 #include "hv_core/file_io.h"
 #include "hv_explore_sac/exploration_run.h"
-#include "hv_explore_sac/policy/policy_planner.h"
+#include "hv_explore_sac/policy/planner_maker.h"
 #include "hv_replay/console.h"
 #include "hv_replay/json.h"
 #include "tool.h"
@@ -160,10 +160,9 @@ hv::explore::PlannerFactory MakerOf(const Arguments& arguments) {
   const bool learned = std::count(arguments.planners.begin(), arguments.planners.end(), "sac") > 0;
   if (!learned) return hv::explore::MakePlanner;
   if (arguments.weights.empty()) throw hv::InputError("the planner `sac` needs --weights");
-  return [network = hv::explore::PolicyNetwork::Read(arguments.weights)](
+  return [make_learned = hv::explore::PlannerMakerOf("sac", arguments.weights)](
              const std::string& name, const hv::explore::PlannerInputs& inputs) {
-    return name == "sac" ? std::make_unique<hv::explore::PolicyPlanner>(network)
-                         : hv::explore::MakePlanner(name, inputs);
+    return name == "sac" ? make_learned(inputs) : hv::explore::MakePlanner(name, inputs);
   };
 }
 

@@ -29,6 +29,7 @@ class ExplorationModel {
   void SetGround(Belief ground) { ground_ = std::move(ground); }
   const Belief& ground() const { return ground_ ? *ground_ : belief_; }
 
+  const ExplorationConfig& config() const { return config_; }
   Belief& belief() { return belief_; }
   const Belief& belief() const { return belief_; }
   const Frontiers& frontiers() const { return frontiers_; }

@@ -44,7 +44,8 @@ struct ExplorerOutput {
 /// Not thread-safe.
 class Explorer {
  public:
-  /// `make_planner`: instead of the planner that the configuration names.
+  /// `make_planner`: instead of the planner that the configuration names; a must for one that is
+  /// learned, whose weights this library cannot read.
   Explorer(const ExplorerConfig& config, const RobotSize& size,
            GoalChooser::PlannerMaker make_planner = nullptr);
   ~Explorer();

@@ -27,6 +27,7 @@ struct PlacesConfig {
 /// How the next goal is chosen.
 struct ChoiceConfig {
   std::string planner = "utility";
+  std::string weights;         ///< of the planner `sac`: a file of hv_explore_train
   double utility_decay = 0.2;  ///< of the utility with the way [1/m]
   double branch_decay = 0.3;   ///< the same for `branch` [1/m]
   double keep_goal = 1.1;      ///< how many times better another goal must be

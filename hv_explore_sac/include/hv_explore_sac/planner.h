@@ -47,8 +47,10 @@ struct PlannerInputs {
   const ExplorationMap* map = nullptr;
 };
 
-/// nearest, utility, ratio, tour, branch, oracle.
+/// nearest, utility, ratio, tour, branch, oracle: those that need no learning.
 const std::vector<std::string>& PlannerNames();
+/// The name of the learned one, which is made from its weights (policy/planner_maker.h).
+inline constexpr const char* kLearnedPlanner = "sac";
 
 /// Throws InputError that names the known planners for an unknown one.
 std::unique_ptr<Planner> MakePlanner(const std::string& name, const PlannerInputs& inputs);

@@ -8,6 +8,7 @@ namespace hv::explore {
 void GoalTours::Plan(const Observation& observation, const ExplorationModel& model,
                      const std::vector<Goal>& goals) {
   size_ = static_cast<int>(goals.size());
+  decay_ = kDecay / PolicyScale(model.config()).unit;
   Measure(observation, model, goals);
   Order(goals);
   const std::size_t all = (std::size_t{1} << goals.size()) - 1;
@@ -16,7 +17,7 @@ void GoalTours::Plan(const Observation& observation, const ExplorationModel& mod
   for (std::size_t i = 0; i < goals.size(); ++i) {
     const float distance = observation.node(goals[i].node).distance;
     length_.push_back(distance + best_length_[all * goals.size() + i]);
-    gain_.push_back(std::exp(-kDecay * distance) * best_gain_[all * goals.size() + i]);
+    gain_.push_back(std::exp(-decay_ * distance) * best_gain_[all * goals.size() + i]);
   }
 }
 
@@ -34,7 +35,7 @@ void GoalTours::Measure(const Observation& observation, const ExplorationModel& 
   }
   discount_.resize(between_.size());
   std::transform(between_.begin(), between_.end(), discount_.begin(),
-                 [](float distance) { return std::exp(-kDecay * distance); });
+                 [this](float distance) { return std::exp(-decay_ * distance); });
 }
 
 void GoalTours::Order(const std::vector<Goal>& goals) {

@@ -7,7 +7,7 @@ namespace hv::explore {
 
 const std::vector<Goal>& GoalSelector::Select(const Observation& observation,
                                               const ExplorationModel& model) {
-  Rank(observation);
+  Rank(observation, PolicyScale(model.config()));
   goals_.clear();
   covered_.clear();
   for (const Ranked& ranked : ranked_) {
@@ -18,13 +18,14 @@ const std::vector<Goal>& GoalSelector::Select(const Observation& observation,
   return goals_;
 }
 
-void GoalSelector::Rank(const Observation& observation) {
+void GoalSelector::Rank(const Observation& observation, const PolicyScale& scale) {
   ranked_.clear();
-  const auto decay = static_cast<float>(config_.goal_decay);
+  const float decay = static_cast<float>(config_.goal_decay) / scale.unit;
   for (int i = 0; i < observation.size(); ++i) {
     const Observation::Node& node = observation.node(i);
     if (node.utility == 0) continue;
-    ranked_.push_back({std::log(static_cast<float>(node.utility)) - decay * node.distance, i});
+    const float points = scale.point * static_cast<float>(node.utility);
+    ranked_.push_back({std::log(points) - decay * node.distance, i});
   }
   std::stable_sort(ranked_.begin(), ranked_.end(),
                    [](const Ranked& a, const Ranked& b) { return a.rank > b.rank; });

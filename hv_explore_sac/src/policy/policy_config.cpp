@@ -6,7 +6,8 @@ namespace hv::explore {
 
 void PolicyConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("most_goals", most_goals, "among which the policy chooses");
-  visitor.Field("goal_decay", goal_decay, "of the utility that ranks goals [1/cells]");
+  visitor.Field("goal_decay", goal_decay,
+                "of the utility that ranks goals [1/cells of the benchmark]");
   visitor.Field("fresh_share", fresh_share,
                 "of a goal's frontier points that no goal before it observes");
   visitor.Field("ways", ways, "the network reads the viewpoints on the ways to the goals too");

@@ -6,25 +6,34 @@
 namespace hv::explore {
 namespace {
 
-// Scales that bring features to size about one [cells, frontier points].
+// Scales that bring features to size about one, in units and points of PolicyScale.
 constexpr float kWay = 200.0F;
 constexpr float kNeighborWay = 22.0F;
 constexpr float kView = 70.0F;
 constexpr float kPoints = 50.0F;
 /// Beyond this logarithms and ratios are all the same.
 constexpr float kMost = 3.0F;
-/// Half edges of the squares in which the unknown is counted [cells].
+/// Half edges of the squares in which the unknown is counted [units].
 constexpr float kNear = 24.0F;
 constexpr float kWide = 56.0F;
 constexpr float kFar = 112.0F;
-/// How quickly goals matter less to each other with the way between them [1/cells].
+/// Edge of the blocks over which it is summed up [units].
+constexpr float kSumBlock = 8.0F;
+/// How quickly goals matter less to each other with the way between them [1/units].
 constexpr float kAroundDecay = 0.02F;
+/// Free cells of a large place [units^2].
+constexpr float kArea = 1e5F;
 
 /// Distance to the nearest border of a place from the lowest cell on, negative outside [cells].
 float BorderDistance(const Belief& belief, const Eigen::Vector2f& cell) {
   const float x = std::min(cell.x(), static_cast<float>(belief.width()) - cell.x());
   const float y = std::min(cell.y(), static_cast<float>(belief.height()) - cell.y());
   return std::min(x, y);
+}
+
+/// In cells, of which blocks have a whole number.
+int BlockOfSums(const PolicyScale& scale) {
+  return std::max(1, static_cast<int>(std::lround(kSumBlock * scale.unit)));
 }
 
 void TransformVectors(int symmetry, int vectors, nn::Matrix<float>& matrix) {
@@ -45,7 +54,8 @@ void PolicyInput::Build(const Observation& observation, const ExplorationModel& 
                         const std::optional<Eigen::Vector2i>& kept, nn::GraphInput& input) {
   goals_ = &selector_.Select(observation, model);
   tours_.Plan(observation, model, *goals_);
-  unknown_.Count(model.belief());
+  scale_ = PolicyScale(model.config());
+  unknown_.Count(model.belief(), BlockOfSums(scale_));
   ChooseNodes(observation);
   const auto count = static_cast<Eigen::Index>(nodes_.size());
   input.features.setZero(count, kFeatures);
@@ -53,7 +63,8 @@ void PolicyInput::Build(const Observation& observation, const ExplorationModel& 
   for (Eigen::Index i = 0; i < count; ++i) {
     const int node = nodes_[static_cast<std::size_t>(i)];
     DescribeNode(observation, model, node, input.features.row(i));
-    input.positions.row(i) = observation.node(node).position.transpose() / kNeighborWay;
+    input.positions.row(i) =
+        observation.node(node).position.transpose() / (kNeighborWay * scale_.unit);
   }
   input.actions.clear();
   for (int goal = 0; goal < static_cast<int>(goals_->size()); ++goal) {
@@ -66,13 +77,7 @@ void PolicyInput::Build(const Observation& observation, const ExplorationModel& 
   input.current = 0;
   JoinNodes(observation, input);
   DescribeState(observation, input);
-  const std::vector<int>& history = observation.history;
-  const std::size_t window = std::min(kHistory, history.size());
-  input.history.setZero(static_cast<Eigen::Index>(window), kFeatures);
-  for (std::size_t i = 0; i < window; ++i) {
-    DescribeNode(observation, model, history[history.size() - window + i],
-                 input.history.row(static_cast<Eigen::Index>(i)));
-  }
+  DescribeHistory(observation, model, input);
 }
 
 void PolicyInput::ChooseNodes(const Observation& observation) {
@@ -114,27 +119,37 @@ void PolicyInput::JoinNodes(const Observation& observation, nn::GraphInput& inpu
 void PolicyInput::DescribeNode(const Observation& observation, const ExplorationModel& model,
                                int node, Row row) const {
   const Observation::Node& of = observation.node(node);
-  row[kPositionX] = of.position.x() / kWay;
-  row[kPositionY] = of.position.y() / kWay;
+  const float way_scale = kWay * scale_.unit;
+  const float points = scale_.point * static_cast<float>(of.utility);
+  row[kPositionX] = of.position.x() / way_scale;
+  row[kPositionY] = of.position.y() / way_scale;
   row[kIsRobot] = node == Observation::kRobot ? 1.0F : 0.0F;
   row[kVisited] = of.visited ? 1.0F : 0.0F;
-  row[kUtility] = static_cast<float>(of.utility) / kPoints;
-  row[kLogUtility] = std::log1p(static_cast<float>(of.utility)) / kMost;
-  row[kDistance] = of.distance / kWay;
-  row[kStraightDistance] = of.position.norm() / kWay;
+  row[kUtility] = points / kPoints;
+  row[kLogUtility] = std::log1p(points) / kMost;
+  row[kDistance] = of.distance / way_scale;
+  row[kStraightDistance] = of.position.norm() / way_scale;
   DescribeUnknown(model, of.position, of.position, row);
 }
 
 void PolicyInput::DescribeGoal(const ExplorationModel& model, int goal, Row row) const {
   const Goal& of = (*goals_)[static_cast<std::size_t>(goal)];
-  const Eigen::Vector2f node(row[kPositionX] * kWay, row[kPositionY] * kWay);
-  row[kFrontierX] = (of.frontier - node).x() / kView;
-  row[kFrontierY] = (of.frontier - node).y() / kView;
+  const float way_scale = kWay * scale_.unit;
+  const float view_scale = kView * scale_.unit;
+  const Eigen::Vector2f node(row[kPositionX] * way_scale, row[kPositionY] * way_scale);
+  row[kFrontierX] = (of.frontier - node).x() / view_scale;
+  row[kFrontierY] = (of.frontier - node).y() / view_scale;
   row[kIsGoal] = 1.0F;
-  row[kFresh] = static_cast<float>(of.fresh) / kPoints;
+  row[kFresh] = scale_.point * static_cast<float>(of.fresh) / kPoints;
   row[kRank] = std::max(of.rank - goals_->front().rank, -kMost);
   DescribeUnknown(model, node, of.frontier, row);
-  float nearest = kMost * kWay;
+  DescribeTour(goal, row);
+}
+
+void PolicyInput::DescribeTour(int goal, Row row) const {
+  const float way_scale = kWay * scale_.unit;
+  const float decay = kAroundDecay / scale_.unit;
+  float nearest = kMost * way_scale;
   float sum = 0.0F;
   float around = 0.0F;
   float least_length = tours_.LengthVia(goal);
@@ -147,12 +162,12 @@ void PolicyInput::DescribeGoal(const ExplorationModel& model, int goal, Row row)
     nearest = std::min(nearest, way);
     sum += way;
     around += static_cast<float>((*goals_)[static_cast<std::size_t>(other)].fresh) *
-              std::exp(-kAroundDecay * way);
+              std::exp(-decay * way);
   }
-  row[kNearestGoal] = nearest / kWay;
-  row[kMeanGoal] = sum / (kWay * static_cast<float>(std::max(1, tours_.size() - 1)));
-  row[kGoalsAround] = around / kPoints;
-  row[kTourExcess] = std::min((tours_.LengthVia(goal) - least_length) / kWay, kMost);
+  row[kNearestGoal] = nearest / way_scale;
+  row[kMeanGoal] = sum / (way_scale * static_cast<float>(std::max(1, tours_.size() - 1)));
+  row[kGoalsAround] = scale_.point * around / kPoints;
+  row[kTourExcess] = std::min((tours_.LengthVia(goal) - least_length) / way_scale, kMost);
   row[kTourGain] = std::max(std::log(tours_.GainVia(goal) / most_gain), -kMost);
 }
 
@@ -161,12 +176,14 @@ void PolicyInput::DescribeUnknown(const ExplorationModel& model, const Eigen::Ve
   const Eigen::Vector2i robot = model.graph().CellOf(model.robot()) - model.belief().low();
   const Eigen::Vector2f cell = place + robot.cast<float>();
   const Eigen::Vector2f ahead = (place - node).normalized();
-  row[kUnknownNear] = unknown_.Around(cell, kNear);
-  row[kUnknownWide] = unknown_.Around(cell, kWide);
-  row[kUnknownFar] = unknown_.Around(cell, kFar);
-  row[kUnknownAhead] = unknown_.Around(cell + kWide * ahead, kWide);
-  row[kUnknownFarAhead] = unknown_.Around(cell + kFar * ahead, kFar);
-  row[kBorder] = std::min(BorderDistance(model.belief(), cell) / kFar, kMost);
+  const float wide = kWide * scale_.unit;
+  const float far = kFar * scale_.unit;
+  row[kUnknownNear] = unknown_.Around(cell, kNear * scale_.unit);
+  row[kUnknownWide] = unknown_.Around(cell, wide);
+  row[kUnknownFar] = unknown_.Around(cell, far);
+  row[kUnknownAhead] = unknown_.Around(cell + wide * ahead, wide);
+  row[kUnknownFarAhead] = unknown_.Around(cell + far * ahead, far);
+  row[kBorder] = std::min(BorderDistance(model.belief(), cell) / far, kMost);
 }
 
 void PolicyInput::DescribeState(const Observation& observation, nn::GraphInput& input) const {
@@ -177,9 +194,22 @@ void PolicyInput::DescribeState(const Observation& observation, nn::GraphInput& 
     points += static_cast<float>((*goals_)[static_cast<std::size_t>(goal)].fresh);
   }
   input.globals.resize(kGlobals);
-  input.globals << unknown_.Everywhere(), static_cast<float>(observation.explored) / 1e5F,
+  const float area = kArea * scale_.unit * scale_.unit;
+  input.globals << unknown_.Everywhere(), static_cast<float>(observation.explored) / area,
       static_cast<float>(tours_.size()) / static_cast<float>(GoalTours::kMostGoals),
-      points / (4.0F * kPoints), shortest / (4.0F * kWay), goals_->front().rank / kMost;
+      scale_.point * points / (4.0F * kPoints), shortest / (4.0F * kWay * scale_.unit),
+      goals_->front().rank / kMost;
+}
+
+void PolicyInput::DescribeHistory(const Observation& observation, const ExplorationModel& model,
+                                  nn::GraphInput& input) const {
+  const std::vector<int>& history = observation.history;
+  const std::size_t window = std::min(kHistory, history.size());
+  input.history.setZero(static_cast<Eigen::Index>(window), kFeatures);
+  for (std::size_t i = 0; i < window; ++i) {
+    DescribeNode(observation, model, history[history.size() - window + i],
+                 input.history.row(static_cast<Eigen::Index>(i)));
+  }
 }
 
 void Transform(int symmetry, nn::GraphInput& input) {

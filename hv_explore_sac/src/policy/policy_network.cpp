@@ -4,12 +4,25 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "hv_core/error.h"
 #include "hv_explore_sac/policy/policy_input.h"
 
 namespace hv::explore {
 namespace {
 
 constexpr const char* kPrefix = "actor";
+
+/// Throws InputError in one line: a file of something else may differ in every key.
+PolicySettings ReadSettings(const std::string& text, const std::string& path) {
+  PolicySettings settings;
+  try {
+    ReadConfig(ParseYaml(text, "its settings"), "its settings", settings);
+  } catch (const InputError& error) {
+    const std::string problems = error.what();
+    throw InputError(path + ": holds no policy; " + problems.substr(0, problems.find('\n')));
+  }
+  return settings;
+}
 
 }  // namespace
 
@@ -34,8 +47,7 @@ nn::NetworkShape PolicyNetwork::Shape() {
 
 std::shared_ptr<const PolicyNetwork> PolicyNetwork::Read(const std::string& path) {
   const nn::Checkpoint checkpoint = nn::Checkpoint::Read(path);
-  PolicySettings settings;
-  ReadConfig(ParseYaml(checkpoint.text, path), path, settings);
+  const PolicySettings settings = ReadSettings(checkpoint.text, path);
   const nn::Network<float> network(settings.network, Shape());
   return std::make_shared<PolicyNetwork>(settings,
                                          checkpoint.Parameters(kPrefix, network.layout()));

@@ -5,6 +5,7 @@
 #include "hv_explore_sac/loop_guard.h"
 #include "hv_explore_sac/policy/policy_planner.h"
 #include "random_states.h"
+#include "small_policy.h"
 
 namespace hv::explore {
 namespace {
@@ -16,23 +17,6 @@ nn::GraphInput InputOf(const RandomState& state, bool ways = false) {
   nn::GraphInput input;
   builder.Build(state.observation, state.environment.model(), std::nullopt, input);
   return input;
-}
-
-PolicySettings SmallSettings() {
-  PolicySettings settings;
-  settings.network.width = 8;
-  settings.network.heads = 2;
-  settings.network.feed_forward = 8;
-  settings.network.encoder_layers = 1;
-  settings.network.pyramid_levels = 1;
-  settings.network.memory = 4;
-  return settings;
-}
-
-std::shared_ptr<const PolicyNetwork> RandomNetwork() {
-  const PolicySettings settings = SmallSettings();
-  const nn::Network<float> network(settings.network, PolicyNetwork::Shape());
-  return std::make_shared<PolicyNetwork>(settings, network.layout().Initial(3));
 }
 
 class PolicyInputs : public testing::TestWithParam<unsigned> {};
@@ -84,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(RandomStates, PolicyInputs, testing::Range(1U, 7U));
 TEST(UnknownShareTest, CountsWhatIsUnknown) {
   Belief belief(64, 48);
   UnknownShare share;
-  share.Count(belief);
+  share.Count(belief, 8);
   EXPECT_FLOAT_EQ(share.Everywhere(), 1.0F);
   EXPECT_FLOAT_EQ(share.Around({32.0F, 24.0F}, 16.0F), 1.0F);
   EXPECT_FLOAT_EQ(share.Around({0.0F, 24.0F}, 16.0F), 0.5F);
@@ -92,7 +76,7 @@ TEST(UnknownShareTest, CountsWhatIsUnknown) {
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 32; ++x) belief.Set(belief.IndexOf({x, y}), Cell::kFree);
   }
-  share.Count(belief);
+  share.Count(belief, 8);
   EXPECT_FLOAT_EQ(share.Everywhere(), 0.5F);
   EXPECT_FLOAT_EQ(share.Around({16.0F, 24.0F}, 8.0F), 0.0F);
   EXPECT_FLOAT_EQ(share.Around({32.0F, 24.0F}, 16.0F), 0.5F);

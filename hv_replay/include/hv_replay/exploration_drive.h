@@ -51,7 +51,8 @@ JsonObject SummaryJson(const ExplorationDriveResult& result);
 /// truth. The same for the same arguments, but for times that are measured.
 class ExplorationDrive {
  public:
-  /// Creates the folder for the results. Throws InputError.
+  /// Creates the folder for the results and reads the weights of a learned planner. Throws
+  /// InputError.
   ExplorationDrive(const SlamConfig& config, sim::World world, const sim::LiveConfig& simulation,
                    const ExplorationDriveOptions& options);
 

@@ -29,7 +29,7 @@ class GoalTours {
   /// each counts exp(-decay x length of the way up to it).
   float GainVia(int goal) const { return gain_[static_cast<std::size_t>(goal)]; }
 
-  static constexpr float kDecay = 0.01F;  ///< of the gain [1/cells]
+  static constexpr float kDecay = 0.01F;  ///< of the gain [1/units of PolicyScale]
 
  private:
   void Measure(const Observation& observation, const ExplorationModel& model,
@@ -38,6 +38,7 @@ class GoalTours {
   void Visit(unsigned set, int first, const std::vector<Goal>& goals);
 
   int size_ = 0;
+  float decay_ = kDecay;  ///< [1/cells]
   GraphSearch search_;
   std::vector<float> between_;
   std::vector<float> length_;

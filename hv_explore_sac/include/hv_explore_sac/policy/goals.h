@@ -7,6 +7,7 @@
 #include "hv_explore_sac/exploration_model.h"
 #include "hv_explore_sac/observation.h"
 #include "hv_explore_sac/policy/policy_config.h"
+#include "hv_explore_sac/policy/policy_scale.h"
 
 namespace hv::explore {
 
@@ -14,7 +15,7 @@ namespace hv::explore {
 struct Goal {
   int node;                  ///< of the observation
   int fresh;                 ///< frontier points that it observes and no goal before it does
-  float rank;                ///< log(utility) - decay x distance
+  float rank;                ///< log(utility) - decay x distance, in units of the benchmark
   Eigen::Vector2f frontier;  ///< mean of those points, relative to the robot [cells]
 };
 
@@ -33,7 +34,7 @@ class GoalSelector {
     float rank;
     int node;
   };
-  void Rank(const Observation& observation);
+  void Rank(const Observation& observation, const PolicyScale& scale);
   bool TakeFresh(const Observation& observation, const ExplorationModel& model, Goal& goal);
 
   PolicyConfig config_;

@@ -8,13 +8,15 @@
 #include "hv_explore_sac/observation.h"
 #include "hv_explore_sac/policy/goal_tours.h"
 #include "hv_explore_sac/policy/goals.h"
+#include "hv_explore_sac/policy/policy_scale.h"
 #include "hv_explore_sac/policy/unknown_share.h"
 
 namespace hv::explore {
 
 /// Turns an observation into what the network reads: the robot's node, the goals as the actions, on
 /// request the viewpoints on the ways to them, and the viewpoints visited last. Robot and goals are
-/// all joined to each other, since what one goal is worth depends on all others. Not thread-safe.
+/// all joined to each other, since what one goal is worth depends on all others. What is read is
+/// the same whatever the size of cells, blocks and views (PolicyScale). Not thread-safe.
 class PolicyInput {
  public:
   /// Columns of the features of a node. The first are vectors (x, y), which turn with the map.
@@ -65,14 +67,18 @@ class PolicyInput {
   void DescribeNode(const Observation& observation, const ExplorationModel& model, int node,
                     Row row) const;
   void DescribeGoal(const ExplorationModel& model, int goal, Row row) const;
+  void DescribeTour(int goal, Row row) const;
   void DescribeUnknown(const ExplorationModel& model, const Eigen::Vector2f& node,
                        const Eigen::Vector2f& place, Row row) const;
   void DescribeState(const Observation& observation, nn::GraphInput& input) const;
+  void DescribeHistory(const Observation& observation, const ExplorationModel& model,
+                       nn::GraphInput& input) const;
 
   PolicyConfig config_;
   GoalSelector selector_;
   GoalTours tours_;
   UnknownShare unknown_;
+  PolicyScale scale_{ExplorationConfig()};  ///< of the belief that was last read
   const std::vector<Goal>* goals_ = nullptr;
   std::vector<int> nodes_;     ///< of the observation: the robot's, the goals', those on the ways
   std::vector<int> index_of_;  ///< of each node of the observation in `nodes_`, or -1

@@ -12,18 +12,19 @@ namespace hv::explore {
 /// beyond the belief is unknown. Not thread-safe.
 class UnknownShare {
  public:
-  void Count(const Belief& belief);
+  /// `edge`: of the blocks [cells].
+  void Count(const Belief& belief, int edge);
 
   /// Share of the square with the edge 2 x `reach` around `cell` [cells], which may lie outside.
   float Around(const Eigen::Vector2f& cell, float reach) const;
   float Everywhere() const;
 
  private:
-  static constexpr int kBlock = 8;  // cells
   int SumUpTo(int column, int row) const {
     return sums_[static_cast<std::size_t>(row * (columns_ + 1) + column)];
   }
 
+  int block_ = 1;
   int columns_ = 0;
   int rows_ = 0;
   std::vector<int> sums_;  ///< over all blocks with a smaller row and column
