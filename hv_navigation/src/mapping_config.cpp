@@ -8,6 +8,8 @@ void SensorModelConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("min_range_m", min_range_m, "nearer returns are of the robot itself [m]");
   visitor.Field("mark_range_m", mark_range_m, "returns further away mark nothing [m]");
   visitor.Field("clear_range_m", clear_range_m, "how far rays clear what they pass [m]");
+  visitor.Field("far_m", far_m, "distance beyond which only some rays of a scan do so [m]");
+  visitor.Field("far_every", far_every, "one of so many, in turns");
 }
 
 void SensorModelConfig::Validate(ConfigProblems& problems, const std::string& section) const {
@@ -17,6 +19,8 @@ void SensorModelConfig::Validate(ConfigProblems& problems, const std::string& se
   problems.Require(mark_range_m > min_range_m, section + ".mark_range_m",
                    "must be larger than min_range_m");
   problems.Require(clear_range_m > 0.0, section + ".clear_range_m", "must be positive");
+  problems.Require(far_m > 0.0, section + ".far_m", "must be positive");
+  problems.Require(far_every >= 1, section + ".far_every", "must be at least 1");
 }
 
 void ObstacleMapConfig::Describe(ConfigVisitor& visitor) {

@@ -1,6 +1,7 @@
 #include "hv_navigation/obstacle_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <sstream>
 
@@ -17,6 +18,22 @@ constexpr int kBlock = ScanMarks::kBlockSide;
 MarkModel ModelOf(const SensorModelConfig& config, Sensor sensor) {
   return {octomap::logodds(config.hit), octomap::logodds(config.miss), sensor == Sensor::kLidar};
 }
+
+/// How far the rays of a scan clear, one after the other: not all of them far, since what is there
+/// changes little from scan to scan, and is most of the work.
+class RayReach {
+ public:
+  RayReach(const SensorModelConfig& model, std::size_t scan) : model_(model), turn_(scan) {}
+
+  double Next() {
+    const bool far = turn_++ % static_cast<std::size_t>(model_.far_every) == 0;
+    return far ? model_.clear_range_m : std::min(model_.clear_range_m, model_.far_m);
+  }
+
+ private:
+  const SensorModelConfig& model_;
+  std::size_t turn_;
+};
 
 Eigen::Vector3d InSensor(const Point& point) {
   return Eigen::Vector3f(point.x, point.y, point.z).cast<double>();
@@ -45,6 +62,7 @@ struct ObstacleMap::Impl {
 
   HeightOcTree tree;
   ScanMarks marks;
+  std::array<std::size_t, 2> scans{};  ///< taken of each sensor
 };
 
 ObstacleMap::ObstacleMap(const ObstacleMapConfig& config)
@@ -72,7 +90,9 @@ InsertReport ObstacleMap::Insert(Sensor sensor, const std::vector<Point>& points
   if (report.refused) return report;
   marks.Restart();
   constexpr double kFurthest_m = 1e4;
+  RayReach reach(model, impl_->scans[static_cast<std::size_t>(sensor)]++);
   for (const Point& point : points) {
+    const double reach_m = reach.Next();
     const Eigen::Vector3d in_sensor = InSensor(point);
     const double range_m = in_sensor.norm();
     if (!(range_m < kFurthest_m)) {
@@ -84,7 +104,7 @@ InsertReport ObstacleMap::Insert(Sensor sensor, const std::vector<Point>& points
       const bool marks_voxel = range_m <= model.mark_range_m && marks.Contains(end);
       if (marks_voxel) marks.AddHit(end);
       ++(marks_voxel ? report.marked : report.only_clear);
-      const double cleared = std::min(1.0, model.clear_range_m / range_m);
+      const double cleared = std::min(1.0, reach_m / range_m);
       marks.AddRay(origin, origin + cleared * (end - origin));
     }
   }

@@ -335,6 +335,24 @@ TEST(ObstacleMapTest, LimitsOfMarkingAndClearing) {
   EXPECT_EQ(map.StateAt({0.05, 6.05, 0.05}), State::kUnknown);
 }
 
+TEST(ObstacleMapTest, RaysTakeTurnsInClearingWhatIsFar) {
+  ObstacleMapConfig config;
+  config.lidar.far_m = 6.0;
+  config.lidar.far_every = 2;
+  ObstacleMap map(config);
+  std::vector<Point> points(2);
+  points[0].x = points[1].y = 14.0F;
+  const auto cleared = [&](double range_m) {
+    return static_cast<int>(map.StateAt({range_m, 0.05, 0.05}) == State::kFree) +
+           static_cast<int>(map.StateAt({0.05, range_m, 0.05}) == State::kFree);
+  };
+  map.Insert(Sensor::kLidar, points, At(0.05, 0.05, 0.05));
+  EXPECT_EQ(cleared(5.0), 2);
+  EXPECT_EQ(cleared(12.0), 1);
+  map.Insert(Sensor::kLidar, points, At(0.05, 0.05, 0.05));
+  EXPECT_EQ(cleared(12.0), 2);
+}
+
 TEST(ObstacleMapTest, BadInputIsCounted) {
   ObstacleMap map(SmallConfig());
   EXPECT_EQ(map.Insert(Sensor::kLidar, {}, At(0.0, 0.0, 0.0)).points, 0U);

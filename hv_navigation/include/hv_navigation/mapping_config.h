@@ -14,6 +14,8 @@ struct SensorModelConfig {
   double min_range_m = 0.3;    ///< nearer returns are of the robot itself
   double mark_range_m = 15.0;  ///< returns further away mark nothing
   double clear_range_m = 15.0;
+  double far_m = 8.0;  ///< beyond that, only some of the rays of a scan clear
+  int far_every = 2;   ///< one of so many, in the next scan another one
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems, const std::string& section) const;
@@ -27,7 +29,7 @@ struct ObstacleMapConfig {
   double least = 0.2;            ///< probabilities stay within, so that changes show soon
   double most = 0.9;
   SensorModelConfig lidar;
-  SensorModelConfig depth{0.7, 0.4, 0.15, 3.0, 3.0};
+  SensorModelConfig depth{0.7, 0.4, 0.15, 3.0, 3.0, 3.0, 1};
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
