@@ -9,6 +9,7 @@ bench=$(basename "$0" .sh)
 
 only=()   # names that are wanted; empty: all
 run=yes   # empty: only the table
+fresh=    # not empty: measure keeps no results that are there
 table=()  # arguments of the script that prints it
 processes=1  # in the background at once
 started=()   # their numbers
@@ -81,6 +82,21 @@ finish_background() {
   local number failed=
   for number in "${started[@]}"; do wait "$number" || failed=yes; done
   [ -z "$failed" ] || fail "see the messages above"
+}
+
+# measure THREADS FOLDER PROGRAM [ARGUMENT...]: unless FOLDER holds the results of these arguments
+# and programs, which it names once the program is through
+measure() {
+  local threads=$1 folder=$2 program=$3 arguments="${*:3}"
+  [[ $arguments != *--weights* ]] || arguments+=" of $(sha256sum <"${weights:?}")"
+  arguments+=" by $(cat "$build"/devel/lib/libhv_*.so | sha256sum)"
+  [ -z "$fresh" ] && [ "$(cat "$folder/arguments.txt" 2>/dev/null)" = "$arguments" ] && return
+  say "${folder#"$out/"}"
+  rm -rf "$folder"
+  mkdir -p "$folder"
+  "$programs/hv_replay/$program" "${@:4}" --threads "$threads" --json >"$folder/run.json" \
+    2>"$folder/log.txt" || fail "$program failed: $(tail -n 1 "$folder/log.txt")"
+  echo "$arguments" >"$folder/arguments.txt"
 }
 
 # print_table SCRIPT [ARGUMENT...]: with what has been gathered in `table`

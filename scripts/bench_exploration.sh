@@ -13,14 +13,13 @@ starts=2     # in each world
 processes=2
 share=0.25
 seconds=3600
-fresh=
 config=$root/config/robot.yaml
 
 usage() {
   cat <<USAGE
 usage: bench_exploration.sh [options]
   --out DIR                    results (default: build/bench/exploration_results). Those that are
-                               there are kept when they are of the same arguments
+                               there are kept when they are of the same arguments and programs
   --fresh                      run everything anew
   --dungeons NAME FILE         maps of the dungeon benchmark (tiles text file); may be repeated.
                                The oracle runs on the first that is wanted
@@ -79,20 +78,6 @@ table+=(--starts "$starts" --time-limit "$seconds" --point-share "$share" --proc
 weights_of() {
   of_planner=()
   [ "$1" != sac ] || of_planner=(--weights "$weights")
-}
-
-# measure THREADS FOLDER PROGRAM [ARGUMENT...]: unless FOLDER holds the results of these arguments,
-# which it names once the program is through
-measure() {
-  local threads=$1 folder=$2 program=$3 arguments="${*:3}"
-  [[ $arguments != *--weights* ]] || arguments+=" of $(sha256sum <"$weights")"
-  [ -z "$fresh" ] && [ "$(cat "$folder/arguments.txt" 2>/dev/null)" = "$arguments" ] && return
-  say "${folder#"$out/"}"
-  rm -rf "$folder"
-  mkdir -p "$folder"
-  "$programs/hv_replay/$program" "${@:4}" --threads "$threads" --json >"$folder/run.json" \
-    2>"$folder/log.txt" || fail "$program failed: $(tail -n 1 "$folder/log.txt")"
-  echo "$arguments" >"$folder/arguments.txt"
 }
 
 # explore_maps NAME COUNT FILE PLANNER RESULT [OPTION...]

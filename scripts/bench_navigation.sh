@@ -24,7 +24,9 @@ usage: bench_navigation.sh [options]
   --data DIR               maps and truth, generated where missing (default:
                            build/bench/navigation_data). Recordings are removed once used: up to
                            4 GB at a time
-  --out DIR                results (default: build/bench/navigation_results)
+  --out DIR                results (default: build/bench/navigation_results). Those that are there
+                           are kept when they are of the same arguments and programs
+  --fresh                  drive everything anew
   --floor-plan NAME YAML   a floor plan (map_server) as a further world; may be repeated
   --only NAME              this world only; may be repeated
   --goals N                for each of ${#seeds[@]} starts in a world (default: $goals)
@@ -38,10 +40,11 @@ USAGE
 
 data=$build/bench/navigation_data
 out=$build/bench/navigation_results
-values[--floor-plan]=2
+values+=([--fresh]=0 [--floor-plan]=2)
 declare -A world_of  # of names of floor plans: their YAML
 own_option() {
   case $1 in
+    --fresh) fresh=yes ;;
     --floor-plan)
       [ -f "$3" ] || fail "$3 is missing"
       worlds+=("$2 robot $plan_seconds")
@@ -75,14 +78,9 @@ make_map() {
 
 # drive NAME RESULT SEED GOALS [OPTION...]
 drive() {
-  local folder=$out/$1/$2
-  say "$1: $2, $4 goals"
-  mkdir -p "$folder"
-  "$programs/hv_replay/hv_navigate" --world "${world_of[$1]:-$1}" --world-seed "$world_seed" \
+  measure 1 "$out/$1/$2" hv_navigate --world "${world_of[$1]:-$1}" --world-seed "$world_seed" \
     --map "$data/$1/map" --map-truth "$data/$1/truth.tum" --config "$config" --seed "$3" \
-    --goals "$4" --point-share "$share" --threads 1 --out "$folder" "${@:5}" \
-    >"$folder/log.txt" 2>&1 ||
-    fail "hv_navigate failed: $(tail -n 1 "$folder/log.txt")"
+    --goals "$4" --point-share "$share" --out "$out/$1/$2" "${@:5}"
 }
 
 mkdir -p "$data" "$out"
