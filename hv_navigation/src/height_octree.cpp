@@ -64,6 +64,16 @@ bool HeightOcTree::IsSettled(const HeightNode& leaf, const Mark* marks, std::siz
   return leaf.getLogOdds() <= clamping_thres_min && !AnyOf(marks, count, ScanMarks::kHit);
 }
 
+/// Nodes lie all over the memory: asks for the children and what they point to at once, instead of
+/// waiting for one after the other.
+void HeightOcTree::Fetch(const HeightNode& node) {
+  for (int child = 0; child < 8; ++child) __builtin_prefetch(node.children[child]);
+  for (int child = 0; child < 8; ++child) {
+    const auto* below = static_cast<const HeightNode*>(node.children[child]);
+    if (below != nullptr) __builtin_prefetch(below->children);
+  }
+}
+
 void HeightOcTree::Settle(HeightNode* node) {
   if (!pruneNode(node)) node->updateOccupancyChildren();
 }
@@ -96,6 +106,7 @@ void HeightOcTree::Take(HeightNode* node, bool created, const Mark* marks, std::
     if (IsSettled(*node, marks, count)) return;
     expandNode(node);
   }
+  if (node->children != nullptr) Fetch(*node);
   const std::size_t part = count / 8;
   for (unsigned child = 0; child < 8; ++child) {
     const Mark* below = marks + child * part;
@@ -203,6 +214,7 @@ void HeightOcTree::VisitBelow(const HeightNode* node, const Cube& cube, const Bo
     return visit(
         {cube.low, cube.side, isNodeOccupied(node), node->low * voxel, node->high * voxel});
   }
+  Fetch(*node);
   for (int index = 0; index < 8; ++index) {
     const auto child = static_cast<unsigned>(index);
     if (!nodeChildExists(node, child)) continue;

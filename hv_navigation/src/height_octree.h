@@ -106,6 +106,7 @@ class HeightOcTree : public octomap::OccupancyOcTreeBase<HeightNode> {
   bool Keep(HeightNode* node, const Cube& cube, const Box& box);
   void VisitBelow(const HeightNode* node, const Cube& cube, const Box& box,
                   const std::function<void(const VoxelView&)>& visit) const;
+  static void Fetch(const HeightNode& node);
   void Settle(HeightNode* node);
 };
 
