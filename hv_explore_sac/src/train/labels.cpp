@@ -75,23 +75,41 @@ class LabelRun {
   std::vector<LabelledState> labels_;
 };
 
+/// The map, or one with another start.
+ExplorationMap Started(const ExplorationMap& map, double elsewhere, std::uint64_t seed) {
+  ExplorationMap started = map;
+  std::mt19937_64 random(seed);
+  if (Uniform(random) >= elsewhere || map.CountFree() == 0) return started;
+  while (true) {
+    const int index = static_cast<int>(random() % map.free.size());
+    if (!map.IsFree(index)) continue;
+    started.start = {index % map.width, index / map.width};
+    return started;
+  }
+}
+
 }  // namespace
 
 void LabelConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("share", share, "of the decisions of a run whose goals are measured");
   visitor.Field("wander", wander, "share of the decisions at which any goal is driven to instead");
+  visitor.Field("elsewhere", elsewhere, "share of the runs that start anywhere free in their map");
   visitor.Field("length_scale", length_scale, "way that costs a return of one [cells]");
 }
 
 void LabelConfig::Validate(ConfigProblems& problems) const {
   problems.Require(share > 0.0 && share <= 1.0, "labels.share", "must be above 0 and at most 1");
   problems.Require(wander >= 0.0 && wander < 1.0, "labels.wander", "must be within 0 and 1");
+  problems.Require(elsewhere >= 0.0 && elsewhere <= 1.0, "labels.elsewhere",
+                   "must be within 0 and 1");
   problems.Require(length_scale > 0.0, "labels.length_scale", "must be positive");
 }
 
 std::vector<LabelledState> LabelMap(const ExplorationMap& map, const LabelInputs& inputs,
                                     std::uint64_t seed) {
-  return LabelRun(map, inputs, seed).Run();
+  constexpr std::uint64_t kOfStart = 0x5bd1e995;
+  const ExplorationMap started = Started(map, inputs.labels.elsewhere, seed ^ kOfStart);
+  return LabelRun(started, inputs, seed).Run();
 }
 
 std::vector<LabelledState> LabelMaps(const std::vector<const ExplorationMap*>& maps,

@@ -66,6 +66,23 @@ class Labels : public testing::Test {
   LabelInputs inputs_;
 };
 
+TEST_F(Labels, RunsMayStartElsewhere) {
+  const auto returns = [&](double elsewhere) {
+    inputs_.labels.elsewhere = elsewhere;
+    std::vector<float> all;
+    for (const LabelledState& label : LabelMap(maps_[0], inputs_, 5)) {
+      all.insert(all.end(), label.returns.begin(), label.returns.end());
+    }
+    return all;
+  };
+  const std::vector<float> at_start = returns(0.0);
+  const std::vector<float> elsewhere = returns(1.0);
+  EXPECT_FALSE(at_start.empty());
+  EXPECT_FALSE(elsewhere.empty());
+  EXPECT_NE(at_start, elsewhere);
+  EXPECT_EQ(returns(1.0), elsewhere);
+}
+
 TEST_F(Labels, HaveAReturnForEachGoalAndNoneIsFree) {
   for (const ExplorationMap& map : maps_) {
     for (const LabelledState& label : LabelMap(map, inputs_, 7)) {

@@ -14,6 +14,7 @@ namespace hv::explore {
 struct LabelConfig {
   double share = 0.15;         ///< of the decisions of a run
   double wander = 0.1;         ///< share of the decisions at which any goal is driven to instead
+  double elsewhere = 0.0;      ///< share of the runs that start anywhere free
   double length_scale = 64.0;  ///< way that costs a return of one [cells]
 
   void Describe(ConfigVisitor& visitor);
