@@ -149,7 +149,7 @@ NavigationInput ControlLoop::ReadInputs(ros::Time now) {
 }
 
 void ControlLoop::Act(const NavigationInput& input, const NavigationOutput& output) {
-  if (output.clear_local_grid) mapping_.ForgetObstacles();
+  if (output.look_again) mapping_.LookAgain();
   if (input.localized) goals_.PublishFeedback(pose_.T_map_base, pose_.stamp);
   publisher_.PublishPicture(output, pose_);
   if (!output.result) return;

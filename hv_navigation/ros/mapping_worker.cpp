@@ -84,6 +84,10 @@ void MappingWorker::Handle(const SensorInput& input) {
     const std::lock_guard<std::mutex> lock(mapping_mutex_);
     surroundings_.ForgetObstacles();
   }
+  if (look_again_.exchange(false)) {
+    const std::lock_guard<std::mutex> lock(mapping_mutex_);
+    surroundings_.LookAgain();
+  }
   if (input.image) TakeImage(*input.image, *input.camera);
   if (input.scan) TakeScan(*input.scan);
   const std::lock_guard<std::mutex> lock(mutex_);

@@ -55,6 +55,8 @@ class MappingWorker {
 
   /// The obstacles around the robot are forgotten before the next scan.
   void ForgetObstacles() { forget_ = true; }
+  /// But for what is so near that it would not be seen again.
+  void LookAgain() { look_again_ = true; }
 
   MappingCounters counters() const;
 
@@ -79,6 +81,7 @@ class MappingWorker {
   std::optional<std::uint32_t> segment_;  // worker only
   std::optional<Time> last_scan_;         // worker only
   std::atomic<bool> forget_{false};
+  std::atomic<bool> look_again_{false};
 
   mutable std::mutex mapping_mutex_;
   Surroundings surroundings_;  // guarded by mapping_mutex_; written by the worker only

@@ -78,6 +78,14 @@ void ObstacleMap::MoveTo(const Eigen::Vector3d& robot) {
   impl_->MoveTo(robot, config_);
 }
 
+void ObstacleMap::KeepNear(const Eigen::Vector3d& position, double distance_m) {
+  const double block_m = kBlock * config_.voxel_m;
+  const Eigen::Array3d low = (position.array() - distance_m) / block_m;
+  const Eigen::Array3d high = (position.array() + distance_m) / block_m;
+  impl_->tree.KeepBox(kBlock * low.floor().cast<int>().matrix(),
+                      kBlock * high.ceil().cast<int>().matrix());
+}
+
 InsertReport ObstacleMap::Insert(Sensor sensor, const std::vector<Point>& points,
                                  const Pose& T_odom_sensor) {
   const SensorModelConfig& model = sensor == Sensor::kLidar ? config_.lidar : config_.depth;

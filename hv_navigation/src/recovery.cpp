@@ -20,7 +20,7 @@ void Recovery::Begin(const NavigationInput& input, bool cornered, NavigationOutp
   from_ = input.T_local_base;
   last_yaw_ = from_.yaw;
   turned_ = 0.0;
-  output.clear_local_grid = step_ == Step::kLookAgain;
+  output.look_again = step_ == Step::kLookAgain;
   output.recoveries = tried_;
 }
 

@@ -73,6 +73,7 @@ InsertReport Surroundings::AddScan(Time stamp, const std::vector<Point>& points,
   const InsertReport report = obstacles_.Insert(Sensor::kLidar, points, T_odom_lidar);
   if (report.refused || report.invalid == report.points) return report;
   scan_stamp_ = stamp;
+  robot_ = T_odom_base.translation();
   scanned_ = true;
   UpdateStamp();
   return report;
@@ -147,6 +148,14 @@ void Surroundings::UpdateMap() {
 
 void Surroundings::ForgetObstacles() {
   obstacles_ = ObstacleMap(config_.obstacle_map);
+  moving_.Clear();
+  scanned_ = false;
+  whole_stamp_.reset();
+}
+
+void Surroundings::LookAgain() {
+  constexpr double kBlind_m = 0.8;
+  obstacles_.KeepNear(robot_, kBlind_m);
   moving_.Clear();
   scanned_ = false;
   whole_stamp_.reset();

@@ -148,7 +148,7 @@ TEST(NavigatorTest, GivesUpOnACorridorThatStaysBlocked) {
   bool backed = false;
   while (!site.output.result && site.time_s < 200.0) {
     site.Step();
-    cleared |= site.output.clear_local_grid;
+    cleared |= site.output.look_again;
     turned |= site.output.state == NavigationState::kTurning;
     backed |=
         site.output.state == NavigationState::kBackingOff && site.robot.velocity().linear_mps < 0.0;

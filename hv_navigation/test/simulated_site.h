@@ -38,7 +38,7 @@ class SimulatedSite {
       input.local_grid = LocalGrid();
     }
     output = navigator.Update(input);
-    if (output.clear_local_grid) ghosts.clear();
+    if (output.look_again) ghosts.clear();
     robot.Drive(output.velocity, kPeriod_s);
     const ClearanceGrid truth(world, ClearanceGrid::Unknown::kOccupied, 1.0);
     collided |= footprint_.Collides(truth, robot.pose());

@@ -208,6 +208,33 @@ TEST_F(SurroundingsTest, ForgottenObstaclesStayUntilTheNextScan) {
   EXPECT_FALSE(surroundings.view().local->OccupiedAt(Vector2d(4.05, 0.0)));
 }
 
+TEST_F(SurroundingsTest, WhatIsTooNearToBeSeenStaysWhenTheyLookAgain) {
+  // Too low for the LiDAR, and by then behind what the camera sees.
+  const Vector2d low(0.65, 0.0);
+  const Vector2d wall(4.05, 0.0);
+  for (const bool all : {false, true}) {
+    Surroundings surroundings(config_, clearance_m_);
+    SolidScene before = scene_;
+    scene_.AddBox({0.6, -0.1, 0.0}, {0.7, 0.1, 0.15});
+    for (int i = 0; i < 3; ++i) {
+      surroundings.AddDepth(Image(0.1 * i), kCamera, T_odom_optical_, Pose::Identity());
+      Scan(surroundings, 0.1 * i);
+    }
+    ASSERT_TRUE(surroundings.view().local->OccupiedAt(low));
+    scene_ = before;
+    scene_.RemoveLast();
+    if (all) {
+      surroundings.ForgetObstacles();
+    } else {
+      surroundings.LookAgain();
+    }
+    Scan(surroundings, 0.3);
+    EXPECT_EQ(surroundings.view().local->OccupiedAt(low), !all);
+    EXPECT_FALSE(surroundings.view().local->OccupiedAt(wall));
+    scene_ = before;
+  }
+}
+
 TEST_F(SurroundingsTest, ForgottenViewsLeaveTheSavedMap) {
   Surroundings surroundings(config_, clearance_m_, FreeMap());
   Scan(surroundings, 0.0);

@@ -183,7 +183,7 @@ void NavigationRun::NoteResponse(const DriveCycle& cycle, NavigationTrial& trial
   const navigation::NavigationOutput& output = cycle.output;
   const bool past =
       output.plan && LeadsPast(*output.plan, SituationAt(cycle), *box_, floor_radius_m_);
-  const bool told = output.result || output.state == navigation::NavigationState::kWaiting;
+  const bool told = output.result || !output.reason.empty();
   if (!past && !told) return;
   trial.response_s = since_s;
   trial.response = past ? "new plan" : output.reason;

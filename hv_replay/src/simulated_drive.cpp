@@ -112,7 +112,7 @@ void SimulatedDrive::Control(DriveCycle& cycle) {
   const Clock::time_point begin = Clock::now();
   cycle.output = navigator_.Update(input);
   cycle.control_ms = MillisecondsSince(begin) - cycle.output.planning_ms.value_or(0.0);
-  if (cycle.output.clear_local_grid) surroundings_.ForgetObstacles();
+  if (cycle.output.look_again) surroundings_.LookAgain();
   simulation_.Command({cycle.output.velocity.linear_mps, cycle.output.velocity.angular_rps});
   cycle.T_world_base = simulation_.State().T_world_body;
   cycle.walkers = view().walkers ? view().walkers->all().size() : 0;

@@ -50,13 +50,13 @@ enum class NavigationResult { kReached, kNoPath, kBlocked, kCancelled, kInputsLo
 struct NavigationOutput {
   Velocity velocity;
   NavigationState state = NavigationState::kIdle;
-  std::string reason;                      ///< why it is in this state, or has ended so; one line
-  std::shared_ptr<const Path> plan;        ///< in the map; null without one
-  Path trajectory;                         ///< of the next seconds, in the local frame
-  double remaining_m = 0.0;                ///< of the plan
-  int recoveries = 0;                      ///< tried since it last got on
-  std::optional<double> planning_ms;       ///< of a plan that came in this cycle, found or not
-  bool clear_local_grid = false;           ///< asks for the obstacles seen so far to be forgotten
+  std::string reason;                 ///< why it is in this state, or has ended so; one line
+  std::shared_ptr<const Path> plan;   ///< in the map; null without one
+  Path trajectory;                    ///< of the next seconds, in the local frame
+  double remaining_m = 0.0;           ///< of the plan
+  int recoveries = 0;                 ///< tried since it last got on
+  std::optional<double> planning_ms;  ///< of a plan that came in this cycle, found or not
+  bool look_again = false;            ///< asks for obstacles that can be seen again to be forgotten
   std::optional<NavigationResult> result;  ///< in the cycle in which a goal ends
 };
 

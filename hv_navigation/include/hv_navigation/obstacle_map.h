@@ -60,6 +60,10 @@ class ObstacleMap {
   /// that is not finite or out of reach changes nothing.
   void MoveTo(const Eigen::Vector3d& robot);
 
+  /// Forgets all but what is nearer to a position than that along each axis, to the next eight
+  /// voxels.
+  void KeepNear(const Eigen::Vector3d& position, double distance_m);
+
   /// Takes the points of one scan, free of distortion, in the frame of the sensor. The sensor has
   /// to be in the region, see MoveTo().
   InsertReport Insert(Sensor sensor, const std::vector<Point>& points, const Pose& T_odom_sensor);

@@ -59,15 +59,18 @@ class Surroundings {
 
   /// Makes the grids anew, far from the robot not every time; to be called once a scan, since the
   /// grid of the map counts views.
-  /// Without a place in the map that grid stays as it is, and after ForgetObstacles() both stay
-  /// until the next scan.
+  /// Without a place in the map that grid stays as it is, and after ForgetObstacles() or
+  /// LookAgain() both stay until the next scan.
   const SurroundingsView& Update(const Pose& T_odom_base, const std::optional<Pose>& T_map_odom);
 
   /// The grids of the last update.
   const SurroundingsView& view() const { return view_; }
 
-  /// Forgets what stands around the robot: when it may not be there, or when odometry began anew.
+  /// Forgets what stands around the robot, as when odometry began anew.
   void ForgetObstacles();
+  /// Forgets what may not be there and will be seen again if it is: all but what is so near that
+  /// the sensors look over it or past it.
+  void LookAgain();
   /// Forgets what was seen of the map, for when the place in it was wrong.
   void ForgetViews();
 
@@ -85,6 +88,7 @@ class Surroundings {
   ObstacleMap obstacles_;
   GlobalGrid global_;
   MovingObstacles moving_;
+  Eigen::Vector3d robot_ = Eigen::Vector3d::Zero();  ///< at the last scan, in odometry [m]
   std::optional<Time> scan_stamp_;
   std::optional<Time> depth_stamp_;
   std::optional<Time> whole_stamp_;  ///< when grids last reached as far as they can
