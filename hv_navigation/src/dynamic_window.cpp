@@ -9,6 +9,7 @@
 namespace hv::navigation {
 namespace {
 
+constexpr double kMarginStep_m = 0.01;
 constexpr double kStanding_mps = 0.02;
 constexpr double kStanding_rps = 0.05;
 constexpr double kWindow_m = 3.0;  // of the path that is compared
@@ -23,16 +24,16 @@ bool Stands(const Velocity& velocity) {
 
 bool DynamicWindow::Start(const PlanarPose& pose, const Velocity& velocity,
                           const Footprint& footprint) {
-  constexpr double kStep_m = 0.01;
   pose_ = pose;
   now_ = velocity;
   footprint_ = footprint;
   while (footprint_.Collides(grid_, pose)) {
     // Who stands a little too near must be able to leave.
-    footprint_.margin_m -= kStep_m;
+    footprint_.margin_m -= kMarginStep_m;
     if (footprint_.margin_m < -config_.margin_slack_m) return false;
   }
-  if (footprint_.margin_m < footprint.margin_m) footprint_.margin_m -= kStep_m;
+  tight_ = footprint_.margin_m < footprint.margin_m;
+  if (tight_) footprint_.margin_m -= kMarginStep_m;
   return true;
 }
 
@@ -75,8 +76,16 @@ std::optional<Velocity> DynamicWindow::Straight(double speed_mps) const {
   return command;
 }
 
+/// The footprint that keeps off what lies in the way by as much as the robot does now.
+Footprint DynamicWindow::AtLeastAsFar(const Velocity& velocity) const {
+  Footprint footprint = footprint_;
+  (velocity.linear_mps > 0.0 ? footprint.front_m : footprint.back_m) += kMarginStep_m;
+  return footprint;
+}
+
 /// Before everything that stands, and where those who walk let it.
 bool DynamicWindow::CanStop(Velocity velocity) const {
+  const Footprint as_far = AtLeastAsFar(velocity);
   const double step_s = 0.5 * config_.step_s;
   const double brake_s = config_.period_s + config_.reaction_s;
   PlanarPose pose = pose_;
@@ -87,6 +96,8 @@ bool DynamicWindow::CanStop(Velocity velocity) const {
     time_s += step_s;
     if (ahead_.MayTouch(footprint_, pose, time_s)) return false;
   }
+  // Who may leave a place that is too near to something must not get nearer, cycle by cycle.
+  if (tight_ && as_far.Collides(grid_, pose)) return false;
   // Who stands does not start for a moment.
   constexpr double kStart_s = 0.5;
   const double before_s = Stands(now_) ? time_s + kStart_s : time_s;

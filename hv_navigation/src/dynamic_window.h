@@ -37,6 +37,7 @@ class DynamicWindow {
 
  private:
   bool CanStop(Velocity velocity) const;
+  Footprint AtLeastAsFar(const Velocity& velocity) const;
   double TurnRate(int k) const;
   double PursuitRate(double speed_mps) const;
   double SpeedLimit() const;
@@ -53,6 +54,7 @@ class DynamicWindow {
   PlanarPose pose_;
   Velocity now_;
   Footprint footprint_;
+  bool tight_ = false;  ///< it stands nearer to something than it should
 };
 
 }  // namespace hv::navigation

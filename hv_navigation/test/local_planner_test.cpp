@@ -281,6 +281,33 @@ TEST(LocalPlannerTest, PassesANarrowDoor) {
   EXPECT_FALSE(run.collided);
 }
 
+TEST(LocalPlannerTest, CreepsNoNearerToWhatItStandsTooNearTo) {
+  OccupancyGrid cells = Hall();
+  FillCells(cells, {5.0, 0.0}, {5.2, 5.0});
+  const ClearanceGrid grid = Clearances(cells);
+  const PlanarPose start{{5.0 - Footprint().front_m - 0.015, 2.5}, 0.0};
+  Follower follower(start);
+  follower.planner.SetPath(StraightPath(start, 2.0));
+  for (int i = 0; i < 100; ++i) follower.Step(grid);
+  EXPECT_LT(follower.robot.pose().position.x(), start.position.x() + 0.012);
+  EXPECT_FALSE(follower.collided);
+  const auto back = follower.planner.BackOff(grid, follower.robot.pose(), Velocity());
+  ASSERT_TRUE(back);
+  EXPECT_LT(back->linear_mps, 0.0);
+}
+
+TEST(LocalPlannerTest, GoesOnAlongAWallThatItStandsTooNearTo) {
+  OccupancyGrid cells = Hall();
+  FillCells(cells, {0.0, 3.0}, {10.0, 3.2});
+  const ClearanceGrid grid = Clearances(cells);
+  const PlanarPose start{{2.0, 3.0 - Footprint().half_width_m - 0.015}, 0.0};
+  Follower follower(start);
+  follower.planner.SetPath(StraightPath(start, 3.0));
+  follower.Until(LocalState::kReached, grid, 30.0);
+  EXPECT_EQ(follower.plan.state, LocalState::kReached);
+  EXPECT_FALSE(follower.collided);
+}
+
 TEST(LocalPlannerTest, StandsWithoutAPathAndInObstacles) {
   const ClearanceGrid grid = Clearances(HallWithPerson(2.0));
   LocalPlanner planner({}, {}, Footprint());
