@@ -179,14 +179,15 @@ class ExplorationAction(unittest.TestCase):
 
     def test_maps_that_make_no_sense_are_counted(self):
         before = self.diagnostics.count("maps unusable", "exploration")
-        bad = self.robot.map_message()
-        bad.info.width += 1
-        self.robot.publish_map(bad)
-        other = self.robot.map_message()
-        other.header.frame_id = "odom"
-        self.robot.publish_map(other)
-        self.assertTrue(wait_until(
-            lambda: self.diagnostics.count("maps unusable", "exploration") == before + 2))
+        wide = self.robot.map_message()
+        wide.info.width += 1
+        elsewhere = self.robot.map_message()
+        elsewhere.header.frame_id = "odom"
+        # One after the other: the newest map takes the place of one that waits.
+        for number, unusable in enumerate((wide, elsewhere), start=1):
+            self.robot.publish_map(unusable)
+            self.assertTrue(wait_until(lambda: self.diagnostics.count(
+                "maps unusable", "exploration") == before + number))
 
 
 if __name__ == "__main__":
