@@ -213,9 +213,12 @@ class Planning {
   /// is left that it does.
   PoseChain PlanThroughNarrows(const FreeSpace& space) {
     constexpr int kTries = 12;
+    constexpr double kShyness = 3.0;  // of obstacles, since the route may lead anywhere
+    FreeSpace shy = space;
+    shy.SetCost({kShyness, config_.soft_clearance_m});
     const LatticeRules rules{config_.lattice_expansions / kTries, config_.turn_cost_m};
     for (int i = 0; i < kTries; ++i) {
-      const Route route = routes_.Open();
+      const Route route = routes_.Open(shy);
       if (route.empty()) break;
       const ThreadedRoute way = ThreadRoute(space, request_.start, plan_.goal, route, rules);
       if (!way.poses.empty()) return Improved(space, way.poses);

@@ -8,8 +8,6 @@ namespace {
 
 constexpr double kBand_m = 1.5;   // about the shortest route, for the one with room
 constexpr double kAbout_m = 0.3;  // about a narrow stretch
-constexpr double kShyness = 3.0;  // weight of nearness where a route may lead anywhere
-constexpr double kShy_m = 0.35;   // and up to which clearance beyond the inscribed circle
 
 }  // namespace
 
@@ -66,10 +64,8 @@ Route RouteFinder::Roomy(const FreeSpace& space) {
   return route.empty() ? shortest_ : route;
 }
 
-Route RouteFinder::Open() {
-  FreeSpace shy = space_;
-  shy.SetCost({kShyness, kShy_m});
-  return Cheapest(shy, [this](const Eigen::Vector2i& cell) {
+Route RouteFinder::Open(const FreeSpace& space) {
+  return Cheapest(space, [this](const Eigen::Vector2i& cell) {
     return closed_.empty() || closed_[IndexOf(cell)] == 0;
   });
 }

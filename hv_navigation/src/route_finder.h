@@ -29,9 +29,8 @@ class RouteFinder {
   /// Near the shortest one, but away from obstacles as far as `space` makes nearness cost.
   Route Roomy(const FreeSpace& space);
 
-  /// Anywhere but where it is closed, and away from obstacles where that is possible; empty when
-  /// there is none.
-  Route Open();
+  /// The same anywhere but where it is closed; empty when there is none.
+  Route Open(const FreeSpace& space);
   /// Closes what is narrow about a stretch where the robot does not get through.
   void Close(const Route& stretch);
 
