@@ -13,6 +13,8 @@ namespace {
 constexpr double kWellWithin = 0.7;
 constexpr double kTurnBelow_mps = 0.05;
 
+double Slower(double a, double b) { return std::abs(a) < std::abs(b) ? a : b; }
+
 double Direction(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   return std::atan2(to.y() - from.y(), to.x() - from.x());
 }
@@ -102,14 +104,15 @@ bool LocalPlanner::HasRoomToTurn(const ClearanceGrid& grid, const PlanarPose& po
          footprint_.CircumscribedRadius() + grid.grid().resolution_m;
 }
 
-Velocity LocalPlanner::Brake(const Velocity& velocity) const {
-  return Braked(velocity, limits_, config_.period_s);
+Velocity LocalPlanner::Brake(const Velocity& measured, const Velocity& asked) const {
+  return Braked({Slower(measured.linear_mps, asked.linear_mps),
+                 Slower(measured.angular_rps, asked.angular_rps)},
+                limits_, config_.period_s);
 }
 
 LocalPlan LocalPlanner::Plan(const ObstaclesAhead& ahead, const PlanarPose& pose,
                              const Velocity& velocity) {
   LocalPlan plan;
-  plan.velocity = Brake(velocity);
   if (tracker_->Empty()) return plan;
   tracker_->Advance(pose.position);
   plan.remaining_m = tracker_->Remaining();

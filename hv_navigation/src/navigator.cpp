@@ -86,6 +86,7 @@ Navigator::~Navigator() = default;
 
 void Navigator::SetGoal(const PlanarPose& goal) {
   ++goal_id_;
+  if (!pursuit_) asked_.reset();  // others may have driven it since
   pursuit_ = Pursuit();
   pursuit_->goal = goal;
   cancel_ = false;
@@ -111,14 +112,16 @@ void Navigator::Finish(NavigationResult result, const std::string& reason,
 
 NavigationOutput Navigator::Update(const NavigationInput& input) {
   NavigationOutput output;
-  output.velocity = local_.Brake(input.velocity);
-  if (!pursuit_) return output;
-  if (cancel_) {
-    Finish(NavigationResult::kCancelled, "cancelled", output);
-    return output;
-  }
+  output.velocity = local_.Brake(input.velocity, asked_.value_or(input.velocity));
+  if (pursuit_) Pursue(input, output);
+  asked_ = output.velocity;
+  return output;
+}
+
+void Navigator::Pursue(const NavigationInput& input, NavigationOutput& output) {
+  if (cancel_) return Finish(NavigationResult::kCancelled, "cancelled", output);
   if (course_) output.plan = course_->path;
-  if (!CheckInputs(input, output)) return output;
+  if (!CheckInputs(input, output)) return;
   if (!pursuit_->progress) pursuit_->progress = input.now;
   FollowFrame(input);
   CheckPath(input);
@@ -127,7 +130,6 @@ NavigationOutput Navigator::Update(const NavigationInput& input) {
   if (course_) output.plan = course_->path;
   output.recoveries = recovery_->tried();
   Drive(input, output);
-  return output;
 }
 
 /// Without inputs it stands, and goes on when they are back.
@@ -257,7 +259,7 @@ void Navigator::Drive(const NavigationInput& input, NavigationOutput& output) {
     return;
   }
   const LocalPlan local = local_.Plan(AheadOf(input), input.T_local_base, input.velocity);
-  output.velocity = local.velocity;
+  if (local.velocity) output.velocity = *local.velocity;
   output.trajectory = local.trajectory;
   output.remaining_m = course_->remaining_m = local.remaining_m;
   course_->strayed = local.off_path_m > config_.navigator.stray_m;

@@ -148,14 +148,16 @@ void Surroundings::UpdateMap() {
 
 void Surroundings::ForgetObstacles() {
   obstacles_ = ObstacleMap(config_.obstacle_map);
-  moving_.Clear();
-  scanned_ = false;
-  whole_stamp_.reset();
+  AwaitScan();
 }
 
 void Surroundings::LookAgain() {
   constexpr double kBlind_m = 0.8;
   obstacles_.KeepNear(robot_, kBlind_m);
+  AwaitScan();
+}
+
+void Surroundings::AwaitScan() {
   moving_.Clear();
   scanned_ = false;
   whole_stamp_.reset();

@@ -37,8 +37,9 @@ struct Follower {
   const LocalPlan& Step(const ObstaclesAhead& ahead) {
     const Velocity before = robot.velocity();
     plan = planner.Plan(ahead, robot.pose(), before);
-    ExpectWithinLimits(before, plan.velocity);
-    robot.Drive(plan.velocity, config.period_s);
+    const Velocity next = plan.velocity.value_or(planner.Brake(before, before));
+    ExpectWithinLimits(before, next);
+    robot.Drive(next, config.period_s);
     collided |= Bare(footprint).Collides(ahead.grid, robot.pose());
     return plan;
   }
@@ -314,12 +315,14 @@ TEST(LocalPlannerTest, StandsWithoutAPathAndInObstacles) {
   const Velocity moving{0.5, 0.2};
   LocalPlan plan = planner.Plan(grid, {{5.0, 2.5}, 0.0}, moving);
   EXPECT_EQ(plan.state, LocalState::kNoPath);
-  EXPECT_LT(plan.velocity.linear_mps, 0.5);
-  EXPECT_NEAR(plan.velocity.angular_rps / plan.velocity.linear_mps, 0.4, 1e-9);
+  EXPECT_FALSE(plan.velocity);
+  const Velocity braked = planner.Brake(moving, moving);
+  EXPECT_LT(braked.linear_mps, 0.5);
+  EXPECT_NEAR(braked.angular_rps / braked.linear_mps, 0.4, 1e-9);
   planner.SetPath(StraightPath({{2.2, 2.5}, 0.0}, 5.0));
   plan = planner.Plan(grid, {{2.2, 2.5}, 0.0}, {});
   EXPECT_EQ(plan.state, LocalState::kBlocked);
-  EXPECT_EQ(plan.velocity.linear_mps, 0.0);
+  EXPECT_FALSE(plan.velocity);
   EXPECT_FALSE(plan.reason.empty());
 }
 

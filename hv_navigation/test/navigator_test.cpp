@@ -263,6 +263,23 @@ TEST(NavigatorTest, CancelBrakes) {
   EXPECT_EQ(site.robot.velocity().linear_mps, 0.0);
 }
 
+/// Odometry tells a velocity of a moment ago.
+TEST(NavigatorTest, BrakesByWhatItAsksForWhenMeasuringLags) {
+  const PlanningConfig config;
+  SimulatedSite site(DeadStraight(), kWest, config);
+  site.navigator.SetGoal(kEast);
+  while (site.robot.pose().position.x() < 6.0) site.Step();
+  const double from_mps = site.robot.velocity().linear_mps;
+  ASSERT_GT(from_mps, 0.9);
+  site.velocity_lag = 0.3;
+  site.navigator.Cancel();
+  const double period_s = config.local.period_s;
+  const int cycles =
+      static_cast<int>(std::ceil(from_mps / (config.limits.linear_braking_mps2 * period_s)));
+  for (int i = 0; i < cycles; ++i) site.Step();
+  EXPECT_EQ(site.robot.velocity().linear_mps, 0.0);
+}
+
 TEST(NavigatorTest, IsDeterministic) {
   SimulatedSite a(RingCorridor(), kWest, {});
   SimulatedSite b(RingCorridor(), kWest, {});

@@ -32,7 +32,8 @@ class SimulatedSite {
     input.now = Time::FromSeconds(1000.0 + time_s);
     input.T_map_base = robot.pose();
     input.T_local_base = T_local_map * robot.pose();
-    input.velocity = robot.velocity();
+    input.velocity = MeasuredVelocity();
+    last_velocity_ = robot.velocity();
     if (sees) {
       input.pose_stamp = input.obstacles_stamp = input.now;
       input.local_grid = LocalGrid();
@@ -63,9 +64,17 @@ class SimulatedSite {
   NavigationOutput output;
   bool sees = true;  ///< whether sensors and pose come in
   bool collided = false;
+  double velocity_lag = 0.0;  ///< share of the last cycle's change that is not measured yet
   double time_s = 0.0;
 
  private:
+  Velocity MeasuredVelocity() const {
+    const Velocity& now = robot.velocity();
+    const auto lagging = [&](double from, double to) { return to + velocity_lag * (from - to); };
+    return {lagging(last_velocity_.linear_mps, now.linear_mps),
+            lagging(last_velocity_.angular_rps, now.angular_rps)};
+  }
+
   /// 10 x 10 m around the robot, as seen from the local frame.
   std::shared_ptr<const ClearanceGrid> LocalGrid() const {
     constexpr double kHalf_m = 5.0;
@@ -97,6 +106,7 @@ class SimulatedSite {
   }
 
   Footprint footprint_;
+  Velocity last_velocity_;
 };
 
 }  // namespace hv::navigation

@@ -50,8 +50,8 @@ enum class LocalState {
 
 struct LocalPlan {
   LocalState state = LocalState::kNoPath;
-  Velocity velocity;  ///< for the next period
-  Path trajectory;    ///< where that leads within the horizon
+  std::optional<Velocity> velocity;  ///< for the next period; nullopt: to brake
+  Path trajectory;                   ///< where that leads within the horizon
   std::string reason;
   double remaining_m = 0.0;  ///< of the path
   double off_path_m = 0.0;   ///< distance of the robot from the path
@@ -116,8 +116,9 @@ class LocalPlanner {
   /// Whether the robot can turn at `pose` with a cell to spare.
   bool HasRoomToTurn(const ClearanceGrid& grid, const PlanarPose& pose) const;
 
-  /// Slows down as fast as allowed, along the circle driven now.
-  Velocity Brake(const Velocity& velocity) const;
+  /// Slows down as fast as allowed, along the circle driven now. What is measured lags behind what
+  /// was asked for in the cycle before, so that it brakes from the slower of both.
+  Velocity Brake(const Velocity& measured, const Velocity& asked) const;
 
  private:
   bool IsAtGoal(const PlanarPose& pose);

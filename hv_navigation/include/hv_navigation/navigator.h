@@ -88,6 +88,7 @@ class Navigator {
   NavigationOutput Update(const NavigationInput& input);
 
  private:
+  void Pursue(const NavigationInput& input, NavigationOutput& output);
   bool CheckInputs(const NavigationInput& input, NavigationOutput& output);
   void FollowFrame(const NavigationInput& input);
   void CheckPath(const NavigationInput& input);
@@ -132,7 +133,8 @@ class Navigator {
   int goal_id_ = 0;
   std::optional<Pursuit> pursuit_;
   std::optional<Course> course_;
-  ObstacleMemory memory_;  ///< of what blocked paths
+  std::optional<Velocity> asked_;  ///< in the cycle before
+  ObstacleMemory memory_;          ///< of what blocked paths
   std::optional<Time> inputs_lost_since_;
   bool cancel_ = false;
   PlanningWorker worker_;

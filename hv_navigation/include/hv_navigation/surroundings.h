@@ -79,6 +79,8 @@ class Surroundings {
 
  private:
   double SideNow();
+  /// Makes no grids until the next scan.
+  void AwaitScan();
   void UpdateStamp();
   void UpdateMap();
 
