@@ -124,6 +124,7 @@ NavigationInput ControlLoop::ReadInputs(ros::Time now) {
   input.now = odometry_.SensorTime(FromRos(now));
   other_clock_ = input.now != FromRos(now);
   input.map = view.map;
+  input.map_has_additions = view.map_has_additions;
   input.local_grid = view.local;
   input.standing_grid = view.standing;
   input.walkers = view.walkers;
@@ -150,6 +151,7 @@ NavigationInput ControlLoop::ReadInputs(ros::Time now) {
 
 void ControlLoop::Act(const NavigationInput& input, const NavigationOutput& output) {
   if (output.look_again) mapping_.LookAgain();
+  if (output.forget_additions) mapping_.ForgetAdditions();
   if (input.localized) goals_.PublishFeedback(pose_.T_map_base, pose_.stamp);
   publisher_.PublishPicture(output, pose_);
   if (!output.result) return;

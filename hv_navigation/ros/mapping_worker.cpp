@@ -78,16 +78,16 @@ void MappingWorker::Run() {
   while (const std::optional<SensorInput> input = queue_.Pop()) Handle(*input);
 }
 
+void MappingWorker::ForgetWhatIsAsked() {
+  const std::lock_guard<std::mutex> lock(mapping_mutex_);
+  if (forget_.exchange(false)) surroundings_.ForgetObstacles();
+  if (look_again_.exchange(false)) surroundings_.LookAgain();
+  if (forget_additions_.exchange(false)) surroundings_.ForgetAdditions();
+}
+
 /// Images first, so that the grids made of the scan have them in.
 void MappingWorker::Handle(const SensorInput& input) {
-  if (forget_.exchange(false)) {
-    const std::lock_guard<std::mutex> lock(mapping_mutex_);
-    surroundings_.ForgetObstacles();
-  }
-  if (look_again_.exchange(false)) {
-    const std::lock_guard<std::mutex> lock(mapping_mutex_);
-    surroundings_.LookAgain();
-  }
+  ForgetWhatIsAsked();
   if (input.image) TakeImage(*input.image, *input.camera);
   if (input.scan) TakeScan(*input.scan);
   const std::lock_guard<std::mutex> lock(mutex_);

@@ -57,6 +57,8 @@ class MappingWorker {
   void ForgetObstacles() { forget_ = true; }
   /// But for what is so near that it would not be seen again.
   void LookAgain() { look_again_ = true; }
+  /// The same for those in the map that the saved map does not hold.
+  void ForgetAdditions() { forget_additions_ = true; }
 
   MappingCounters counters() const;
 
@@ -66,6 +68,7 @@ class MappingWorker {
  private:
   void Run();
   void Handle(const SensorInput& input);
+  void ForgetWhatIsAsked();
   void TakeScan(const hv_msgs::TrackedScan& message);
   void AddScan(const DecodedTrackedScan& scan);
   void TakeImage(const sensor_msgs::Image& message, const sensor_msgs::CameraInfo& camera);
@@ -82,6 +85,7 @@ class MappingWorker {
   std::optional<Time> last_scan_;         // worker only
   std::atomic<bool> forget_{false};
   std::atomic<bool> look_again_{false};
+  std::atomic<bool> forget_additions_{false};
 
   mutable std::mutex mapping_mutex_;
   Surroundings surroundings_;  // guarded by mapping_mutex_; written by the worker only

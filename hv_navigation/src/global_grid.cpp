@@ -60,6 +60,7 @@ GlobalGrid::GlobalGrid(const GlobalGridConfig& config, std::optional<OccupancyGr
   grid_.resolution_m = config.resolution_m;
   if (!saved || !IsWhole(*saved)) return;
   grid_ = std::move(*saved);
+  has_saved_ = true;
   changes_.everything = true;
   saved_ = grid_.cells;
   run_.assign(saved_.size(), 0);
@@ -193,17 +194,41 @@ void GlobalGrid::TakeCell(const Vector2i& at, bool occupied, bool near) {
   const int next = occupied ? std::min(config_.mark_views, std::max(0, run) + 1)
                             : std::max(-config_.clear_views, std::min(0, run) - 1);
   run_[index] = static_cast<std::int8_t>(next);
-  std::int8_t& cell = grid_.cells[index];
-  const std::int8_t before = cell;
-  if (next >= config_.mark_views) cell = OccupancyGrid::kOccupied;
+  if (next >= config_.mark_views) SetCell(at, OccupancyGrid::kOccupied);
   const bool is_free =
-      next <= -config_.clear_views || (!occupied && cell == OccupancyGrid::kUnknown);
-  if (is_free && fixed_[index] == 0) cell = OccupancyGrid::kFree;
-  if (cell != before) Include(at, changes_.cells);
+      next <= -config_.clear_views || (!occupied && grid_.cells[index] == OccupancyGrid::kUnknown);
+  if (is_free && fixed_[index] == 0) SetCell(at, OccupancyGrid::kFree);
+}
+
+bool GlobalGrid::IsAddition(std::size_t index) const {
+  return has_saved_ && OccupancyGrid::IsOccupied(grid_.cells[index]) &&
+         !OccupancyGrid::IsOccupied(saved_[index]);
+}
+
+void GlobalGrid::SetCell(const Vector2i& at, std::int8_t value) {
+  const std::size_t index = IndexIn(grid_.width, at.x(), at.y());
+  if (grid_.cells[index] == value) return;
+  additions_ -= IsAddition(index) ? 1 : 0;
+  grid_.cells[index] = value;
+  additions_ += IsAddition(index) ? 1 : 0;
+  Include(at, changes_.cells);
+}
+
+void GlobalGrid::ForgetAdditions() {
+  if (additions_ == 0) return;
+  for (int y = 0; y < grid_.height; ++y) {
+    for (int x = 0; x < grid_.width; ++x) {
+      const std::size_t index = IndexIn(grid_.width, x, y);
+      if (!IsAddition(index)) continue;
+      SetCell({x, y}, saved_[index]);
+      run_[index] = 0;
+    }
+  }
 }
 
 void GlobalGrid::ForgetViews() {
   grid_.cells = saved_;
+  additions_ = 0;
   std::fill(run_.begin(), run_.end(), std::int8_t{0});
   changes_.everything = true;
 }

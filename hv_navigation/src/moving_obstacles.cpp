@@ -30,7 +30,9 @@ void MovingObstaclesConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("least_sightings", least_sightings,
                 "of cells newly taken in a line of motion; fewer are chance");
   visitor.Field("off_line_m", off_line_m, "by which these may lie beside the line [m]");
-  visitor.Field("hold_s", hold_s, "who moved is minded, when not noticed for so long [s]");
+  visitor.Field("appear_s", appear_s, "what has appeared may be somebody for so long [s]");
+  visitor.Field("watch_s", watch_s, "who walked is watched, whether it moves or not, so long [s]");
+  visitor.Field("hold_s", hold_s, "who moved is minded, when not to be seen for so long [s]");
   visitor.Field("near_m", near_m, "so near to the robot people may not be seen at all [m]");
   visitor.Field("hold_near_s", hold_near_s, "and are minded for so long [s]");
   visitor.Section("walk", walk, "how it goes on");
@@ -45,6 +47,8 @@ void MovingObstaclesConfig::Validate(ConfigProblems& problems) const {
   positive(follow_s, "follow_s");
   positive(off_line_m, "off_line_m");
   problems.Require(flicker_s >= 0.0, "moving.flicker_s", "must not be negative");
+  problems.Require(appear_s >= 0.0, "moving.appear_s", "must not be negative");
+  problems.Require(watch_s >= 0.0, "moving.watch_s", "must not be negative");
   problems.Require(hold_s >= 0.0, "moving.hold_s", "must not be negative");
   problems.Require(near_m >= 0.0, "moving.near_m", "must not be negative");
   problems.Require(hold_near_s >= hold_s, "moving.hold_near_s", "must be at least moving.hold_s");
@@ -59,9 +63,8 @@ const std::vector<Walker>& MovingObstacles::Track(Time stamp, const OccupancyGri
                                                   const Vector2d& robot) {
   if (!config_.predict) return walkers_;
   if (!past_.empty() && (stamp <= past_.back().stamp || stamp - past_.back().stamp > 1.0)) Clear();
-  while (!past_.empty() && stamp - past_.front().stamp > config_.compare_s + config_.flicker_s) {
-    past_.pop_front();
-  }
+  const double kept_s = std::max(config_.compare_s + config_.flicker_s, config_.watch_s);
+  while (!past_.empty() && stamp - past_.front().stamp > kept_s) past_.pop_front();
   while (!sightings_.empty() && stamp - sightings_.front().stamp > config_.follow_s) {
     sightings_.pop_front();
   }
@@ -71,8 +74,10 @@ const std::vector<Walker>& MovingObstacles::Track(Time stamp, const OccupancyGri
     Recognise(sighting);
     if (const std::optional<Walker> walker = Follow(sighting)) noticed.push_back(*walker);
   }
+  Watch(stamp, seen);
   Forget(stamp, robot, noticed);
   walkers_.insert(walkers_.end(), noticed.begin(), noticed.end());
+  NoteAppeared(stamp, sightings);
   sightings_.insert(sightings_.end(), sightings.begin(), sightings.end());
   past_.push_back({stamp, seen});
   return walkers_;
@@ -83,6 +88,7 @@ bool MovingObstacles::IsNew(const Vector2d& place, Time stamp) const {
   constexpr double kJitter_s = 0.02;
   bool was_free = false;
   for (const Past& past : past_) {
+    if (stamp - past.stamp > config_.compare_s + config_.flicker_s) continue;
     if (stamp - past.stamp < config_.compare_s - kJitter_s) break;
     const std::int8_t state = StateAt(past.grid, place);
     if (OccupancyGrid::IsOccupied(state)) return false;
@@ -150,7 +156,7 @@ std::optional<Walker> MovingObstacles::Follow(const Sighting& sighting) const {
     const int count = CountInLine(sighting, velocity);
     if (count <= most) continue;
     most = count;
-    walker = Walker{sighting.stamp, sighting.place, velocity / speed_mps};
+    walker = Walker{sighting.stamp, sighting.place, velocity / speed_mps, sighting.stamp};
   }
   return walker;
 }
@@ -169,7 +175,61 @@ int MovingObstacles::CountInLine(const Sighting& sighting, const Vector2d& veloc
   return count;
 }
 
-/// Those who were not noticed for long, and those who have been noticed anew.
+/// Sighted twice within a moment, so near that somebody may have walked from one to the other.
+void MovingObstacles::NoteAppeared(Time now, const std::vector<Sighting>& sightings) {
+  constexpr double kMoment_s = 0.25;
+  constexpr double kSlack_m = 0.15;
+  const auto is_old = [&](const Walker& one) { return now - one.stamp > config_.appear_s; };
+  appeared_.erase(std::remove_if(appeared_.begin(), appeared_.end(), is_old), appeared_.end());
+  for (const Sighting& sighting : sightings) {
+    if (sighting.stays) continue;
+    const bool again = std::any_of(sightings_.begin(), sightings_.end(), [&](const auto& before) {
+      const double since_s = now - before.stamp;
+      return since_s <= kMoment_s &&
+             (sighting.place - before.place).norm() <= config_.walk.most_mps * since_s + kSlack_m;
+    });
+    if (again) appeared_.push_back({now, sighting.place, Vector2d::Zero()});
+  }
+}
+
+bool MovingObstacles::WasFree(const Vector2d& place) const {
+  return std::any_of(past_.begin(), past_.end(), [&](const Past& past) {
+    return StateAt(past.grid, place) == OccupancyGrid::kFree;
+  });
+}
+
+/// The middle of what is there and was not there all the time.
+std::optional<Vector2d> MovingObstacles::MovableNear(const Vector2d& place, double distance_m,
+                                                     const OccupancyGrid& seen) const {
+  const Vector2i low = seen.CellOf(place.array() - distance_m);
+  const Vector2i high = seen.CellOf(place.array() + distance_m);
+  Vector2d sum = Vector2d::Zero();
+  int count = 0;
+  for (int y = low.y(); y <= high.y(); ++y) {
+    for (int x = low.x(); x <= high.x(); ++x) {
+      if (!seen.Contains({x, y}) || !OccupancyGrid::IsOccupied(seen.At(x, y))) continue;
+      const Vector2d center = seen.CenterOf({x, y});
+      if ((center - place).norm() > distance_m || !WasFree(center)) continue;
+      sum += center;
+      ++count;
+    }
+  }
+  if (count < config_.least_cells) return std::nullopt;
+  return Vector2d(sum / count);
+}
+
+void MovingObstacles::Watch(Time now, const OccupancyGrid& seen) {
+  for (Walker& walker : walkers_) {
+    if (now - walker.walked > config_.watch_s) continue;
+    const double walked_m = config_.walk.most_mps * (now - walker.stamp);
+    const auto place = MovableNear(walker.place, config_.walk.radius_m + walked_m, seen);
+    if (!place) continue;
+    walker.place = *place;
+    walker.stamp = now;
+  }
+}
+
+/// Those who were not to be seen for long, and those who have been noticed anew.
 void MovingObstacles::Forget(Time now, const Vector2d& robot, const std::vector<Walker>& noticed) {
   const double same_m = 2.0 * config_.walk.radius_m;
   const auto is_old = [&](const Walker& walker) {

@@ -218,15 +218,30 @@ double Navigator::LeastRemaining(const GlobalPlan& plan) const {
   return course_->least_remaining_m + (detour_m > kDetour_m ? detour_m : 0.0);
 }
 
+/// Certain is what the map alone shows, but for what was seen there since it was saved: who stood
+/// in a door may have gone. That is forgotten once a goal, and has some time to be seen again.
+void Navigator::JudgeProblem(const NavigationInput& input, const FinishedPlan& finished,
+                             NavigationOutput& output) {
+  constexpr double kSeeAgain_s = 2.5;
+  const PlanOutcome outcome = finished.plan.outcome;
+  pursuit_->problem = finished.plan.reason;
+  pursuit_->cornered = outcome == PlanOutcome::kCornered;
+  pursuit_->problem_certain =
+      !finished.with_obstacles && !pursuit_->cornered && outcome != PlanOutcome::kStartBlocked;
+  if (finished.plan.Found() || !pursuit_->problem_certain) return;
+  if (input.map_has_additions && !pursuit_->doubted) {
+    pursuit_->doubted = input.now;
+    output.forget_additions = true;
+  }
+  pursuit_->problem_certain = !Within(pursuit_->doubted, input.now, kSeeAgain_s);
+}
+
 void Navigator::TakePlan(const NavigationInput& input, NavigationOutput& output) {
   const std::optional<FinishedPlan> finished = worker_.Take();
   if (!finished || finished->goal_id != goal_id_) return;
   output.planning_ms = finished->planning_ms;
   const GlobalPlan& plan = finished->plan;
-  pursuit_->problem = plan.reason;
-  pursuit_->cornered = plan.outcome == PlanOutcome::kCornered;
-  pursuit_->problem_certain = !finished->with_obstacles && !pursuit_->cornered &&
-                              plan.outcome != PlanOutcome::kStartBlocked;
+  JudgeProblem(input, *finished, output);
   if (!plan.Found()) {
     const bool leads_elsewhere = course_ && course_->goal_id != goal_id_;
     if (leads_elsewhere) course_.reset();

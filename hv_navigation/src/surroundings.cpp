@@ -116,8 +116,8 @@ const SurroundingsView& Surroundings::Update(const Pose& T_odom_base,
   OccupancyGrid seen =
       MakeObstacleGrid(obstacles_, config_.ground, config_.obstacle_grid, T_odom_base, SideNow());
   const Eigen::Vector2d robot = T_odom_base.translation().head<2>();
-  view_.walkers = std::make_shared<const Walkers>(config_.moving.walk,
-                                                  moving_.Track(*scan_stamp_, seen, robot));
+  const std::vector<Walker>& walkers = moving_.Track(*scan_stamp_, seen, robot);
+  view_.walkers = std::make_shared<const Walkers>(config_.moving.walk, walkers, moving_.appeared());
   OccupancyGrid standing = seen;
   const std::optional<CellBox> walked = TakeOut(*view_.walkers, *scan_stamp_, standing);
   if (T_map_odom) {
@@ -136,6 +136,7 @@ const SurroundingsView& Surroundings::Update(const Pose& T_odom_base,
 
 /// Only what has changed is measured anew.
 void Surroundings::UpdateMap() {
+  view_.map_has_additions = global_.has_additions();
   const GlobalGrid::Changes changes = global_.TakeChanges();
   if (changes.everything) {
     view_.map =
@@ -165,6 +166,11 @@ void Surroundings::AwaitScan() {
 
 void Surroundings::ForgetViews() {
   global_.ForgetViews();
+  UpdateMap();
+}
+
+void Surroundings::ForgetAdditions() {
+  global_.ForgetAdditions();
   UpdateMap();
 }
 

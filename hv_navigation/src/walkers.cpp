@@ -107,13 +107,15 @@ bool Walkers::MayTouch(const Footprint& footprint, const PlanarPose& pose, Time 
 }
 
 bool Walkers::MayReach(const Footprint& footprint, const PlanarPose& pose, Time then) const {
-  if (walkers_.empty()) return false;
+  if (walkers_.empty() && perhaps_.empty()) return false;
   const Box robot = BoxOf(footprint);
   const PlanarPose T_robot = pose.Inverse();
-  return std::any_of(walkers_.begin(), walkers_.end(), [&](const Walker& walker) {
+  const auto may_reach = [&](const Walker& walker) {
     const double gone_m = config_.any_way_mps * std::max(0.0, then - walker.stamp);
     return robot.DistanceTo(T_robot * walker.place) <= config_.radius_m + gone_m;
-  });
+  };
+  return std::any_of(walkers_.begin(), walkers_.end(), may_reach) ||
+         std::any_of(perhaps_.begin(), perhaps_.end(), may_reach);
 }
 
 bool Walkers::MayBeNear(const Vector2d& place, double distance_m, Time then) const {

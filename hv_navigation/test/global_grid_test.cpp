@@ -116,6 +116,26 @@ TEST(GlobalGridTest, ObstaclesThatLeaveAreTakenAway) {
   EXPECT_EQ(ValueAt(global.grid(), at), OccupancyGrid::kFree);
 }
 
+TEST(GlobalGridTest, AdditionsToASavedMapCanBeForgotten) {
+  OccupancyGrid view = FreeView();
+  FillBox(view, {1.0, 1.0}, {1.3, 1.3}, OccupancyGrid::kOccupied);
+  const PlanarPose T_map_odom{{5.25, 4.25}, 0.0};
+  const Vector2d at = T_map_odom * Vector2d(1.15, 1.15);
+  for (const bool saved : {true, false}) {
+    GlobalGrid global = saved ? GlobalGrid({}, Room()) : GlobalGrid({});
+    EXPECT_FALSE(global.has_additions());
+    for (int i = 0; i < 20; ++i) global.Update(view, T_map_odom, {0.0, 0.0});
+    EXPECT_EQ(global.has_additions(), saved);
+    global.ForgetAdditions();
+    EXPECT_FALSE(global.has_additions());
+    EXPECT_EQ(OccupancyGrid::IsOccupied(ValueAt(global.grid(), at)), !saved);
+    EXPECT_EQ(ValueAt(global.grid(), T_map_odom.position), OccupancyGrid::kFree)
+        << "was taken away";
+    for (int i = 0; i < 2; ++i) global.Update(view, T_map_odom, {0.0, 0.0});
+    EXPECT_EQ(ValueAt(global.grid(), at), OccupancyGrid::kOccupied) << "is seen again";
+  }
+}
+
 TEST(GlobalGridTest, FreeViewsRemoveFurnitureFromNearAndNoWalls) {
   const Vector2d on_wall(3.0, 0.1);
   const Vector2d on_box(5.25, 4.25);

@@ -76,6 +76,34 @@ TEST(NavigatorTest, SaysAtOnceThatThereIsNoPath) {
   EXPECT_EQ(site.robot.driven_m(), 0.0);
 }
 
+/// A door in which somebody stood when it was seen last.
+class DoorThatWasShut : public testing::TestWithParam<bool> {};
+
+TEST_P(DoorThatWasShut, IsLookedAtOnceMore) {
+  const bool still = GetParam();
+  OccupancyGrid shut = DeadStraight();
+  FillCells(shut, {14.0, 0.0}, {14.3, 2.4});
+  SimulatedSite site(DeadStraight(), kWest, {});
+  site.SetMap(shut);
+  site.input.map_has_additions = true;
+  site.navigator.SetGoal(kEast);
+  int asked = 0;
+  for (int i = 0; i < 400 && !site.output.result; ++i) {
+    site.Step();
+    if (!site.output.forget_additions) continue;
+    ++asked;
+    site.input.map_has_additions = still;
+    if (!still) site.SetMap(DeadStraight());
+  }
+  EXPECT_EQ(asked, 1);
+  EXPECT_EQ(site.output.result, still ? NavigationResult::kNoPath : NavigationResult::kReached);
+  if (still) {
+    EXPECT_LT(site.time_s, 5.0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(IsShut, DoorThatWasShut, testing::Bool());
+
 TEST(NavigatorTest, TakesANewGoalWithoutStopping) {
   SimulatedSite site(DeadStraight(), kWest, {});
   site.navigator.SetGoal(kEast);

@@ -68,6 +68,14 @@ TEST(WalkersTest, AnyOfThemCounts) {
   EXPECT_FALSE(Walkers({}, {far, near}).MayTouch({}, {}, kThen + 1.0));
 }
 
+TEST(WalkersTest, WhatAppearsMayGoAnyWay) {
+  const Walker appeared{kThen, {1.5, 0.0}, Vector2d::Zero()};
+  const Walkers walkers({}, {}, {appeared});
+  EXPECT_FALSE(walkers.MayReach({}, {}, kThen));
+  EXPECT_TRUE(walkers.MayReach({}, {}, kThen + 1.0));
+  EXPECT_FALSE(walkers.MayTouch({}, {}, kThen + 1.0)) << "but goes nowhere for certain";
+}
+
 TEST(WalkersTest, TimesBeforeTheyWereNoticedAreThatTime) {
   const Walker walker{kThen, {0.0, 0.0}, {1.0, 0.0}};
   EXPECT_TRUE(Walkers({}, {walker}).MayTouch({}, {}, kThen - 2.0));

@@ -105,6 +105,7 @@ void SimulatedDrive::Control(DriveCycle& cycle) {
   }
   input.localized = cycle.place && cycle.place->localized;
   input.map = view().map;
+  input.map_has_additions = view().map_has_additions;
   input.local_grid = view().local;
   input.standing_grid = view().standing;
   input.walkers = view().walkers;
@@ -113,6 +114,7 @@ void SimulatedDrive::Control(DriveCycle& cycle) {
   cycle.output = navigator_.Update(input);
   cycle.control_ms = MillisecondsSince(begin) - cycle.output.planning_ms.value_or(0.0);
   if (cycle.output.look_again) surroundings_.LookAgain();
+  if (cycle.output.forget_additions) surroundings_.ForgetAdditions();
   simulation_.Command({cycle.output.velocity.linear_mps, cycle.output.velocity.angular_rps});
   cycle.T_world_base = simulation_.State().T_world_body;
   cycle.walkers = view().walkers ? view().walkers->all().size() : 0;

@@ -36,6 +36,10 @@ class GlobalGrid {
 
   /// Forgets what was seen, for when the pose in the map was wrong.
   void ForgetViews();
+  /// Whether there are obstacles that a saved map does not hold; never without a saved map.
+  bool has_additions() const { return additions_ > 0; }
+  /// Forgets them: those that are still there will be seen again.
+  void ForgetAdditions();
 
   const OccupancyGrid& grid() const { return grid_; }
 
@@ -53,6 +57,8 @@ class GlobalGrid {
   std::pair<int, int> GrowthAlong(int axis, double low_m, double high_m) const;
   void GrowToHold(const Eigen::Vector2d& low, const Eigen::Vector2d& high);
   OccupancyGrid Turned(const OccupancyGrid& observed, const PlanarPose& T_map_odom) const;
+  bool IsAddition(std::size_t index) const;
+  void SetCell(const Eigen::Vector2i& at, std::int8_t value);
   void TakeCell(const Eigen::Vector2i& at, bool occupied, bool near);
 
   GlobalGridConfig config_;
@@ -61,6 +67,8 @@ class GlobalGrid {
   std::vector<std::uint8_t> fixed_;   ///< 1: an obstacle of the saved map that stays
   std::vector<std::uint8_t> beside_;  ///< 1: next to an obstacle of the saved map
   std::vector<std::int8_t> run_;      ///< views in a row with an obstacle, negative: without
+  bool has_saved_ = false;
+  std::size_t additions_ = 0;  ///< cells
   Changes changes_;
   std::size_t left_out_ = 0;
 };

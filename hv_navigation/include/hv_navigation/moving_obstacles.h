@@ -25,7 +25,9 @@ struct MovingObstaclesConfig {
   double follow_s = 0.8;     ///< for how long cells newly taken are followed
   int least_sightings = 4;   ///< of cells newly taken in a line of motion; fewer are chance
   double off_line_m = 0.2;   ///< by which these may lie beside the line
-  double hold_s = 0.6;       ///< who moved is minded, when not noticed for a moment
+  double appear_s = 0.5;     ///< what has appeared may be somebody for so long
+  double watch_s = 2.5;      ///< who walked is watched, whether it moves or not, for so long
+  double hold_s = 0.6;       ///< who moved is minded, when not to be seen for a moment
   double near_m = 1.0;       ///< so near to the robot people may not be seen at all
   double hold_near_s = 2.0;  ///< and are minded longer
   WalkConfig walk;
@@ -36,7 +38,9 @@ struct MovingObstaclesConfig {
 
 /// Tells what moves around the robot, people above all, from grids of obstacles: it takes cells
 /// that were seen free, again and again along a line, at the pace of a walk. What only comes into
-/// view takes cells too, but does not get on. Not thread-safe.
+/// view takes cells too, but does not get on. Who has once been noticed is watched by the cells
+/// that it takes and that were free not long ago, since it may stop, or turn round over its own
+/// trail. Not thread-safe.
 class MovingObstacles {
  public:
   explicit MovingObstacles(const MovingObstaclesConfig& config) : config_(config) {}
@@ -45,11 +49,14 @@ class MovingObstacles {
   /// gives who walks. `robot` is the middle of what is looked at [m].
   const std::vector<Walker>& Track(Time stamp, const OccupancyGrid& seen,
                                    const Eigen::Vector2d& robot);
+  /// What has taken cells in scans one after the other of late: it may turn out to walk.
+  const std::vector<Walker>& appeared() const { return appeared_; }
 
   void Clear() {
     past_.clear();
     sightings_.clear();
     walkers_.clear();
+    appeared_.clear();
   }
 
  private:
@@ -67,15 +74,21 @@ class MovingObstacles {
   std::vector<Sighting> NewlyTaken(Time stamp, const OccupancyGrid& seen,
                                    const Eigen::Vector2d& robot) const;
   bool IsNew(const Eigen::Vector2d& place, Time stamp) const;
+  bool WasFree(const Eigen::Vector2d& place) const;
   void Recognise(Sighting& sighting);
   std::optional<Walker> Follow(const Sighting& sighting) const;
   int CountInLine(const Sighting& sighting, const Eigen::Vector2d& velocity) const;
+  void NoteAppeared(Time now, const std::vector<Sighting>& sightings);
+  void Watch(Time now, const OccupancyGrid& seen);
+  std::optional<Eigen::Vector2d> MovableNear(const Eigen::Vector2d& place, double distance_m,
+                                             const OccupancyGrid& seen) const;
   void Forget(Time now, const Eigen::Vector2d& robot, const std::vector<Walker>& noticed);
 
   MovingObstaclesConfig config_;
   std::deque<Past> past_;           ///< oldest first
   std::deque<Sighting> sightings_;  ///< of late, oldest first
-  std::vector<Walker> walkers_;     ///< noticed of late, oldest first
+  std::vector<Walker> walkers_;     ///< of late, oldest first
+  std::vector<Walker> appeared_;
 };
 
 }  // namespace hv::navigation

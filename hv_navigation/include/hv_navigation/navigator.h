@@ -23,6 +23,7 @@ struct NavigationInput {
   bool localized = true;  ///< whether the pose in the map can be trusted
   Velocity velocity;      ///< driven now
   std::shared_ptr<const ClearanceGrid> map;
+  bool map_has_additions = false;  ///< it holds obstacles that the saved map does not
   std::shared_ptr<const ClearanceGrid> local_grid;
   /// The same without those who walk, since plans need not mind them; null where nobody is told.
   std::shared_ptr<const ClearanceGrid> standing_grid;
@@ -57,6 +58,7 @@ struct NavigationOutput {
   int recoveries = 0;                 ///< tried since it last got on
   std::optional<double> planning_ms;  ///< of a plan that came in this cycle, found or not
   bool look_again = false;            ///< asks for obstacles that can be seen again to be forgotten
+  bool forget_additions = false;      ///< the same for what the saved map does not hold
   std::optional<NavigationResult> result;  ///< in the cycle in which a goal ends
 };
 
@@ -95,6 +97,8 @@ class Navigator {
   void ConsiderPlanning(const NavigationInput& input);
   PlanningJob JobNow(const NavigationInput& input) const;
   void TakePlan(const NavigationInput& input, NavigationOutput& output);
+  void JudgeProblem(const NavigationInput& input, const FinishedPlan& finished,
+                    NavigationOutput& output);
   bool IsWorthTaking(const GlobalPlan& plan) const;
   double LeastRemaining(const GlobalPlan& plan) const;
   void Drive(const NavigationInput& input, NavigationOutput& output);
@@ -110,6 +114,7 @@ class Navigator {
     std::string problem;            ///< of that plan; empty when found
     bool problem_certain = false;   ///< the map alone shows it
     bool cornered = false;          ///< it is that the robot cannot turn where it stands
+    std::optional<Time> doubted;    ///< when additions to the map were to be forgotten
     std::optional<Time> progress;   ///< when it last got on
     std::optional<Time> stuck_since;
   };

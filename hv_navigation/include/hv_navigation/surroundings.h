@@ -25,7 +25,8 @@ struct SurroundingsView {
   std::shared_ptr<const ClearanceGrid> standing;  ///< the same without those who walk
   std::shared_ptr<const Walkers> walkers;         ///< they, in the same frame
   std::shared_ptr<const ClearanceGrid> map;       ///< frame of the map; null while nothing is known
-  Time obstacles_stamp;  ///< of the oldest among the newest data of the sensors
+  bool map_has_additions = false;  ///< it holds obstacles that the saved map does not
+  Time obstacles_stamp;            ///< of the oldest among the newest data of the sensors
 };
 
 struct DepthInsertReport {
@@ -73,6 +74,9 @@ class Surroundings {
   void LookAgain();
   /// Forgets what was seen of the map, for when the place in it was wrong.
   void ForgetViews();
+  /// Forgets obstacles in the map that the saved map does not hold; those that are still there will
+  /// be seen again.
+  void ForgetAdditions();
 
   const ObstacleMap& obstacle_map() const { return obstacles_; }
   std::size_t cells_left_out() const { return global_.left_out(); }

@@ -25,26 +25,28 @@ struct WalkConfig {
   void Validate(ConfigProblems& problems) const;
 };
 
-/// Somebody who walks, when last noticed.
+/// Somebody who walks, when last seen.
 struct Walker {
   Time stamp;
   Eigen::Vector2d place;      ///< [m]
   Eigen::Vector2d direction;  ///< unit
+  Time walked{};              ///< when it was last seen to get on
 };
 
 /// Where those who walk may be in the next seconds, in the frame of odometry. Immutable; const
 /// methods may run concurrently.
 class Walkers {
  public:
-  Walkers(const WalkConfig& config, std::vector<Walker> walkers)
-      : config_(config), walkers_(std::move(walkers)) {}
+  /// `perhaps`: what has just appeared; it may be somebody, and go any way.
+  Walkers(const WalkConfig& config, std::vector<Walker> walkers, std::vector<Walker> perhaps = {})
+      : config_(config), walkers_(std::move(walkers)), perhaps_(std::move(perhaps)) {}
 
   const WalkConfig& config() const { return config_; }
   const std::vector<Walker>& all() const { return walkers_; }
 
   /// Whether one of them may touch a robot that is at `pose` then, with its margin, walking on.
   bool MayTouch(const Footprint& footprint, const PlanarPose& pose, Time then) const;
-  /// The same for who may turn.
+  /// The same for who may turn, and for what has just appeared.
   bool MayReach(const Footprint& footprint, const PlanarPose& pose, Time then) const;
 
   /// Whether one of them may be within `distance_m` of `place` then.
@@ -56,6 +58,7 @@ class Walkers {
  private:
   WalkConfig config_;
   std::vector<Walker> walkers_;
+  std::vector<Walker> perhaps_;
 };
 
 }  // namespace hv::navigation
