@@ -25,14 +25,15 @@ void MovingObstaclesConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("flicker_s", flicker_s, "what was taken so shortly before is not taken newly [s]");
   visitor.Field("reach_m", reach_m, "distance from the robot up to which it is looked for [m]");
   visitor.Field("least_cells", least_cells, "cells newly taken together; fewer are noise");
+  visitor.Field("appear_cells", appear_cells,
+                "cells newly taken together; fewer are not taken for somebody at once");
   visitor.Field("most_cells", most_cells, "cells newly taken together; more are no person");
   visitor.Field("follow_s", follow_s, "for how long cells newly taken are followed [s]");
   visitor.Field("least_sightings", least_sightings,
                 "of cells newly taken in a line of motion; fewer are chance");
   visitor.Field("off_line_m", off_line_m, "by which these may lie beside the line [m]");
   visitor.Field("appear_s", appear_s, "what has appeared may be somebody for so long [s]");
-  visitor.Field("watch_s", watch_s, "who walked is watched, whether it moves or not, so long [s]");
-  visitor.Field("hold_s", hold_s, "who moved is minded, when not to be seen for so long [s]");
+  visitor.Field("hold_s", hold_s, "who moved is minded, when not noticed for so long [s]");
   visitor.Field("near_m", near_m, "so near to the robot people may not be seen at all [m]");
   visitor.Field("hold_near_s", hold_near_s, "and are minded for so long [s]");
   visitor.Section("walk", walk, "how it goes on");
@@ -48,7 +49,6 @@ void MovingObstaclesConfig::Validate(ConfigProblems& problems) const {
   positive(off_line_m, "off_line_m");
   problems.Require(flicker_s >= 0.0, "moving.flicker_s", "must not be negative");
   problems.Require(appear_s >= 0.0, "moving.appear_s", "must not be negative");
-  problems.Require(watch_s >= 0.0, "moving.watch_s", "must not be negative");
   problems.Require(hold_s >= 0.0, "moving.hold_s", "must not be negative");
   problems.Require(near_m >= 0.0, "moving.near_m", "must not be negative");
   problems.Require(hold_near_s >= hold_s, "moving.hold_near_s", "must be at least moving.hold_s");
@@ -63,8 +63,9 @@ const std::vector<Walker>& MovingObstacles::Track(Time stamp, const OccupancyGri
                                                   const Vector2d& robot) {
   if (!config_.predict) return walkers_;
   if (!past_.empty() && (stamp <= past_.back().stamp || stamp - past_.back().stamp > 1.0)) Clear();
-  const double kept_s = std::max(config_.compare_s + config_.flicker_s, config_.watch_s);
-  while (!past_.empty() && stamp - past_.front().stamp > kept_s) past_.pop_front();
+  while (!past_.empty() && stamp - past_.front().stamp > config_.compare_s + config_.flicker_s) {
+    past_.pop_front();
+  }
   while (!sightings_.empty() && stamp - sightings_.front().stamp > config_.follow_s) {
     sightings_.pop_front();
   }
@@ -74,7 +75,6 @@ const std::vector<Walker>& MovingObstacles::Track(Time stamp, const OccupancyGri
     Recognise(sighting);
     if (const std::optional<Walker> walker = Follow(sighting)) noticed.push_back(*walker);
   }
-  Watch(stamp, seen);
   Forget(stamp, robot, noticed);
   walkers_.insert(walkers_.end(), noticed.begin(), noticed.end());
   NoteAppeared(stamp, sightings);
@@ -88,7 +88,6 @@ bool MovingObstacles::IsNew(const Vector2d& place, Time stamp) const {
   constexpr double kJitter_s = 0.02;
   bool was_free = false;
   for (const Past& past : past_) {
-    if (stamp - past.stamp > config_.compare_s + config_.flicker_s) continue;
     if (stamp - past.stamp < config_.compare_s - kJitter_s) break;
     const std::int8_t state = StateAt(past.grid, place);
     if (OccupancyGrid::IsOccupied(state)) return false;
@@ -120,7 +119,7 @@ std::vector<MovingObstacles::Sighting> MovingObstacles::NewlyTaken(Time stamp,
     const int size = statistics.at<int>(group, cv::CC_STAT_AREA);
     if (size < config_.least_cells || size > config_.most_cells) continue;
     const Vector2d center(centers.at<double>(group, 0), centers.at<double>(group, 1));
-    sightings.push_back({stamp, seen.CenterOf(low) + seen.resolution_m * center, false});
+    sightings.push_back({stamp, seen.CenterOf(low) + seen.resolution_m * center, size, false});
   }
   return sightings;
 }
@@ -156,7 +155,7 @@ std::optional<Walker> MovingObstacles::Follow(const Sighting& sighting) const {
     const int count = CountInLine(sighting, velocity);
     if (count <= most) continue;
     most = count;
-    walker = Walker{sighting.stamp, sighting.place, velocity / speed_mps, sighting.stamp};
+    walker = Walker{sighting.stamp, sighting.place, velocity / speed_mps};
   }
   return walker;
 }
@@ -175,61 +174,38 @@ int MovingObstacles::CountInLine(const Sighting& sighting, const Vector2d& veloc
   return count;
 }
 
-/// Sighted twice within a moment, so near that somebody may have walked from one to the other.
-void MovingObstacles::NoteAppeared(Time now, const std::vector<Sighting>& sightings) {
+/// Twice within a moment, so near that somebody may have walked from one place to the other.
+bool MovingObstacles::SightedAgain(const Sighting& sighting) const {
   constexpr double kMoment_s = 0.25;
   constexpr double kSlack_m = 0.15;
-  const auto is_old = [&](const Walker& one) { return now - one.stamp > config_.appear_s; };
-  appeared_.erase(std::remove_if(appeared_.begin(), appeared_.end(), is_old), appeared_.end());
-  for (const Sighting& sighting : sightings) {
-    if (sighting.stays) continue;
-    const bool again = std::any_of(sightings_.begin(), sightings_.end(), [&](const auto& before) {
-      const double since_s = now - before.stamp;
-      return since_s <= kMoment_s &&
-             (sighting.place - before.place).norm() <= config_.walk.most_mps * since_s + kSlack_m;
-    });
-    if (again) appeared_.push_back({now, sighting.place, Vector2d::Zero()});
-  }
-}
-
-bool MovingObstacles::WasFree(const Vector2d& place) const {
-  return std::any_of(past_.begin(), past_.end(), [&](const Past& past) {
-    return StateAt(past.grid, place) == OccupancyGrid::kFree;
+  return std::any_of(sightings_.begin(), sightings_.end(), [&](const Sighting& before) {
+    const double since_s = sighting.stamp - before.stamp;
+    return since_s <= kMoment_s &&
+           (sighting.place - before.place).norm() <= config_.walk.most_mps * since_s + kSlack_m;
   });
 }
 
-/// The middle of what is there and was not there all the time.
-std::optional<Vector2d> MovingObstacles::MovableNear(const Vector2d& place, double distance_m,
-                                                     const OccupancyGrid& seen) const {
-  const Vector2i low = seen.CellOf(place.array() - distance_m);
-  const Vector2i high = seen.CellOf(place.array() + distance_m);
-  Vector2d sum = Vector2d::Zero();
-  int count = 0;
-  for (int y = low.y(); y <= high.y(); ++y) {
-    for (int x = low.x(); x <= high.x(); ++x) {
-      if (!seen.Contains({x, y}) || !OccupancyGrid::IsOccupied(seen.At(x, y))) continue;
-      const Vector2d center = seen.CenterOf({x, y});
-      if ((center - place).norm() > distance_m || !WasFree(center)) continue;
-      sum += center;
-      ++count;
-    }
+/// The newest at each place, where nobody has been noticed.
+void MovingObstacles::NoteAppeared(Time now, const std::vector<Sighting>& sightings) {
+  const double same_m = 2.0 * config_.walk.radius_m;
+  const auto drop = [this](const auto& which) {
+    appeared_.erase(std::remove_if(appeared_.begin(), appeared_.end(), which), appeared_.end());
+  };
+  for (const Sighting& sighting : sightings) {
+    if (sighting.stays || sighting.cells < config_.appear_cells) continue;
+    if (!SightedAgain(sighting)) continue;
+    drop([&](const Walker& one) { return (one.place - sighting.place).norm() <= same_m; });
+    appeared_.push_back({now, sighting.place, Vector2d::Zero()});
   }
-  if (count < config_.least_cells) return std::nullopt;
-  return Vector2d(sum / count);
+  drop([&](const Walker& one) {
+    return now - one.stamp > config_.appear_s ||
+           std::any_of(walkers_.begin(), walkers_.end(), [&](const Walker& walker) {
+             return (walker.place - one.place).norm() <= same_m;
+           });
+  });
 }
 
-void MovingObstacles::Watch(Time now, const OccupancyGrid& seen) {
-  for (Walker& walker : walkers_) {
-    if (now - walker.walked > config_.watch_s) continue;
-    const double walked_m = config_.walk.most_mps * (now - walker.stamp);
-    const auto place = MovableNear(walker.place, config_.walk.radius_m + walked_m, seen);
-    if (!place) continue;
-    walker.place = *place;
-    walker.stamp = now;
-  }
-}
-
-/// Those who were not to be seen for long, and those who have been noticed anew.
+/// Those who were not noticed for long, and those who have been noticed anew.
 void MovingObstacles::Forget(Time now, const Vector2d& robot, const std::vector<Walker>& noticed) {
   const double same_m = 2.0 * config_.walk.radius_m;
   const auto is_old = [&](const Walker& walker) {

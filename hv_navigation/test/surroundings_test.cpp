@@ -295,8 +295,8 @@ TEST_F(SurroundingsTest, WhoWalksLeavesNoTraceInTheMap) {
     EXPECT_TRUE(view.standing->OccupiedAt(Vector2d(4.05, 4.0))) << i;
   }
   EXPECT_EQ(told, 20);
-  for (int i = 30; i < 70; ++i) Scan(surroundings, 0.1 * i);
-  // Who stands, longer than it may take to turn, is an obstacle like any other.
+  for (int i = 30; i < 50; ++i) Scan(surroundings, 0.1 * i);
+  // Who stands is an obstacle like any other.
   EXPECT_TRUE(surroundings.view().standing->OccupiedAt(Vector2d(2.05, 1.4)));
   EXPECT_TRUE(surroundings.view().map->OccupiedAt(Vector2d(2.05, 1.4)));
 }

@@ -25,12 +25,11 @@ struct WalkConfig {
   void Validate(ConfigProblems& problems) const;
 };
 
-/// Somebody who walks, when last seen.
+/// Somebody who walks, when last noticed.
 struct Walker {
   Time stamp;
   Eigen::Vector2d place;      ///< [m]
   Eigen::Vector2d direction;  ///< unit
-  Time walked{};              ///< when it was last seen to get on
 };
 
 /// Where those who walk may be in the next seconds, in the frame of odometry. Immutable; const
