@@ -320,7 +320,8 @@ void Navigator::Stuck(const NavigationInput& input, const std::string& reason,
   if (!course_ && pursuit_->problem_certain) {
     return Finish(NavigationResult::kNoPath, output.reason, output);
   }
-  const bool may_pass = course_ || !pursuit_->cornered;
+  // Only who is cornered gains nothing by waiting, unless trying to get out has not helped.
+  const bool may_pass = course_ || !pursuit_->cornered || recovery_->tried() > 0;
   if (may_pass && Within(pursuit_->stuck_since, input.now, config_.navigator.wait_s)) return;
   const bool enough = recovery_->tried() >= config_.navigator.recoveries ||
                       !Within(pursuit_->progress, input.now, config_.navigator.give_up_s);

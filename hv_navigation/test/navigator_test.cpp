@@ -201,6 +201,18 @@ TEST(NavigatorTest, BacksOutOfAnAlleyWhereItCannotTurn) {
   EXPECT_FALSE(site.collided);
 }
 
+/// People stand round the robot: it can neither turn nor back off, and is still there when they go.
+TEST(NavigatorTest, WaitsForThoseWhoCrowdIn) {
+  SimulatedSite site(DeadStraight(), {{5.05, 1.2}, 0.0}, {});
+  for (const double x : {4.3, 5.4}) FillCells(site.world, {x, 0.9}, {x + 0.4, 1.5});
+  site.navigator.SetGoal(kWest);
+  for (int i = 0; i < 100; ++i) ASSERT_FALSE(site.Step().result) << site.output.reason;
+  EXPECT_LT((site.robot.pose().position - Eigen::Vector2d(5.05, 1.2)).norm(), 0.1);
+  site.world = DeadStraight();
+  EXPECT_EQ(site.Run(60.0), NavigationResult::kReached) << site.output.reason;
+  EXPECT_FALSE(site.collided);
+}
+
 /// The map holds something at the goal, which is there or not.
 class OccupiedGoal : public testing::TestWithParam<bool> {};
 
