@@ -52,8 +52,9 @@ class Exploration(unittest.TestCase):
         self.assertGreater(0.01 * len(known), 0.9 * FREE_M2)
 
     def test_says_why_it_ends(self):
-        self.assertIn(self.result.reason, ("explored: no frontiers are left",
-                                           "nothing is left that can be reached"))
+        # The second may go on with what navigation said of the last goal.
+        self.assertRegex(self.result.reason, "^(explored: no frontiers are left$|"
+                                             "nothing is left that can be reached($|; ))")
         self.assertGreater(self.result.travelled_m, 10.0)
         self.assertGreater(self.result.elapsed_s, 20.0)
 
