@@ -48,6 +48,7 @@ void MovingObstaclesConfig::Validate(ConfigProblems& problems) const {
   positive(follow_s, "follow_s");
   positive(off_line_m, "off_line_m");
   problems.Require(flicker_s >= 0.0, "moving.flicker_s", "must not be negative");
+  problems.Require(appear_cells >= 1, "moving.appear_cells", "must be at least 1");
   problems.Require(appear_s >= 0.0, "moving.appear_s", "must not be negative");
   problems.Require(hold_s >= 0.0, "moving.hold_s", "must not be negative");
   problems.Require(near_m >= 0.0, "moving.near_m", "must not be negative");

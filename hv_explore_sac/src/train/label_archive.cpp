@@ -29,8 +29,7 @@ void LabelArchive::Clear() const {
   for (const fs::path& path : old) fs::remove(path);
 }
 
-std::vector<LabelledState> LabelArchive::Collect(const std::string& name,
-                                                 const std::vector<const ExplorationMap*>& maps,
+std::vector<LabelledState> LabelArchive::Collect(const std::string& name, const MapSupply& maps,
                                                  const LabelInputs& inputs, std::uint64_t seed,
                                                  const Report& report) const {
   std::vector<LabelledState> labels;
@@ -41,10 +40,8 @@ std::vector<LabelledState> LabelArchive::Collect(const std::string& name,
       Append(ReadLabels(path), labels);
       continue;
     }
-    const std::vector<const ExplorationMap*> part(maps.begin() + static_cast<std::ptrdiff_t>(begin),
-                                                  maps.begin() + static_cast<std::ptrdiff_t>(end));
-    std::vector<LabelledState> made = LabelMaps(part, inputs, seed + begin, [&](double share) {
-      const double done = static_cast<double>(begin) + share * static_cast<double>(part.size());
+    std::vector<LabelledState> made = LabelMaps(maps, begin, end, inputs, seed, [&](double share) {
+      const double done = static_cast<double>(begin) + share * static_cast<double>(end - begin);
       report(done / static_cast<double>(maps.size()));
     });
     WriteLabels(made, path);

@@ -94,6 +94,8 @@ void LabelConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("share", share, "of the decisions of a run whose goals are measured");
   visitor.Field("wander", wander, "share of the decisions at which any goal is driven to instead");
   visitor.Field("elsewhere", elsewhere, "share of the runs that start anywhere free in their map");
+  visitor.Field("crossed", crossed,
+                "maps made out of two of those for training, beside these, new in each round");
   visitor.Field("length_scale", length_scale, "way that costs a return of one [cells]");
 }
 
@@ -102,6 +104,7 @@ void LabelConfig::Validate(ConfigProblems& problems) const {
   problems.Require(wander >= 0.0 && wander < 1.0, "labels.wander", "must be within 0 and 1");
   problems.Require(elsewhere >= 0.0 && elsewhere <= 1.0, "labels.elsewhere",
                    "must be within 0 and 1");
+  problems.Require(crossed >= 0, "labels.crossed", "must not be negative");
   problems.Require(length_scale > 0.0, "labels.length_scale", "must be positive");
 }
 
@@ -112,14 +115,14 @@ std::vector<LabelledState> LabelMap(const ExplorationMap& map, const LabelInputs
   return LabelRun(started, inputs, seed).Run();
 }
 
-std::vector<LabelledState> LabelMaps(const std::vector<const ExplorationMap*>& maps,
+std::vector<LabelledState> LabelMaps(const MapSupply& maps, std::size_t begin, std::size_t end,
                                      const LabelInputs& inputs, std::uint64_t seed,
                                      const std::function<void(double)>& report) {
-  std::vector<std::vector<LabelledState>> parts(maps.size());
+  std::vector<std::vector<LabelledState>> parts(end - begin);
   std::atomic<std::size_t> done{0};
-  tbb::parallel_for(std::size_t{0}, maps.size(), [&](std::size_t i) {
-    parts[i] = LabelMap(*maps[i], inputs, seed + i);
-    report(static_cast<double>(++done) / static_cast<double>(maps.size()));
+  tbb::parallel_for(begin, end, [&](std::size_t i) {
+    parts[i - begin] = LabelMap(maps.Map(i), inputs, seed + i);
+    report(static_cast<double>(++done) / static_cast<double>(end - begin));
   });
   std::vector<LabelledState> labels;
   for (std::vector<LabelledState>& part : parts) {

@@ -87,10 +87,13 @@ Rollout Trainer::RolloutOf(std::shared_ptr<const PolicyNetwork> network) const {
 }
 
 void Trainer::CollectLabels() {
-  Label(RoundName(round_), ShareOf(training_, ranks_), Seed(kLabels));
+  MapSupply maps(ShareOf(training_, ranks_));
+  maps.AddCrossed(training_, static_cast<std::size_t>(config_.labels.crossed / ranks_.size()),
+                  Seed(kLabels));
+  Label(RoundName(round_), maps, Seed(kLabels));
   std::vector<const ExplorationMap*> few = validation_;
   few.resize(std::min(few.size(), kGaugeMaps));
-  gauge_ = Label("gauge_" + RoundName(round_), few, Seed(kGauge));
+  gauge_ = Label("gauge_" + RoundName(round_), MapSupply(few), Seed(kGauge));
   labels_.clear();
   for (int round = std::max(0, round_ + 1 - config_.improvement.kept_rounds); round <= round_;
        ++round) {
@@ -99,8 +102,7 @@ void Trainer::CollectLabels() {
   }
 }
 
-std::vector<LabelledState> Trainer::Label(const std::string& name,
-                                          const std::vector<const ExplorationMap*>& maps,
+std::vector<LabelledState> Trainer::Label(const std::string& name, const MapSupply& maps,
                                           std::uint64_t seed) const {
   const Rollout rollout = RolloutOf(best_);
   LabelInputs inputs{config_.exploration, config_.policy, config_.labels, &sensor_, &rollout};

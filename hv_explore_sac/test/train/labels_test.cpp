@@ -102,7 +102,8 @@ TEST_F(Labels, OfManyMapsAreThoseOfEachInOrder) {
     maps.push_back(&maps_[i]);
     for (LabelledState& label : LabelMap(maps_[i], inputs_, 10 + i)) alone.push_back(label);
   }
-  const std::vector<LabelledState> all = LabelMaps(maps, inputs_, 10, [](double) {});
+  const std::vector<LabelledState> all =
+      LabelMaps(MapSupply(maps), 0, maps.size(), inputs_, 10, [](double) {});
   ASSERT_EQ(all.size(), alone.size());
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].returns, alone[i].returns);
 }

@@ -22,8 +22,7 @@ class LabelArchive {
 
   /// As LabelMaps(); parts that are there already are not made again. Throws InputError when one of
   /// these is damaged.
-  std::vector<LabelledState> Collect(const std::string& name,
-                                     const std::vector<const ExplorationMap*>& maps,
+  std::vector<LabelledState> Collect(const std::string& name, const MapSupply& maps,
                                      const LabelInputs& inputs, std::uint64_t seed,
                                      const Report& report) const;
 

@@ -6,6 +6,7 @@
 
 #include "hv_explore_sac/nn/replay_buffer.h"
 #include "hv_explore_sac/policy/policy_config.h"
+#include "hv_explore_sac/train/map_supply.h"
 #include "hv_explore_sac/train/rollout.h"
 
 namespace hv::explore {
@@ -15,6 +16,7 @@ struct LabelConfig {
   double share = 0.15;         ///< of the decisions of a run
   double wander = 0.1;         ///< share of the decisions at which any goal is driven to instead
   double elsewhere = 0.0;      ///< share of the runs that start anywhere free
+  int crossed = 0;             ///< maps made out of two of those for training
   double length_scale = 64.0;  ///< way that costs a return of one [cells]
 
   void Describe(ConfigVisitor& visitor);
@@ -44,9 +46,9 @@ struct LabelInputs {
 std::vector<LabelledState> LabelMap(const ExplorationMap& map, const LabelInputs& inputs,
                                     std::uint64_t seed);
 
-/// The same on many maps, in parallel and yet in their order; map i has the seed `seed` + i.
-/// `report` is told the share that is done, from several threads.
-std::vector<LabelledState> LabelMaps(const std::vector<const ExplorationMap*>& maps,
+/// The same on the maps from `begin` to before `end`, in parallel and yet in their order; map i has
+/// the seed `seed` + i. `report` is told the share that is done, from several threads.
+std::vector<LabelledState> LabelMaps(const MapSupply& maps, std::size_t begin, std::size_t end,
                                      const LabelInputs& inputs, std::uint64_t seed,
                                      const std::function<void(double share)>& report);
 

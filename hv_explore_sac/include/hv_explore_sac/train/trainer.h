@@ -50,8 +50,7 @@ class Trainer {
   void RunRound();
   Rollout RolloutOf(std::shared_ptr<const PolicyNetwork> network) const;
   void CollectLabels();
-  std::vector<LabelledState> Label(const std::string& name,
-                                   const std::vector<const ExplorationMap*>& maps,
+  std::vector<LabelledState> Label(const std::string& name, const MapSupply& maps,
                                    std::uint64_t seed) const;
   std::shared_ptr<const PolicyNetwork> Learn();
   void FineTune();
