@@ -26,9 +26,11 @@ constexpr bool kLatched = true;
 ExplorationNode::ExplorationNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
     : parameters_(ReadParameters(private_nh)),
       listener_(transforms_, nh),
+      learner_(MakeOnlineLearner(parameters_.config.explorer.online_learning,
+                                 parameters_.config.explorer.choice.weights)),
       explorer_(parameters_.config.explorer, parameters_.size,
                 PlannerMakerOf(parameters_.config.explorer.choice.planner,
-                               parameters_.config.explorer.choice.weights)),
+                               parameters_.config.explorer.choice.weights, learner_)),
       navigation_(nh, parameters_.config.node.map_frame),
       server_(private_nh, parameters_.config.node.map_frame, transforms_),
       starts_by_itself_(parameters_.config.node.autostart),
@@ -38,6 +40,7 @@ ExplorationNode::ExplorationNode(ros::NodeHandle nh, ros::NodeHandle private_nh)
   ROS_INFO_STREAM("configuration:\n" << ToYaml(parameters_.config));
   diagnostics_.setHardwareID("none");
   diagnostics_.add("exploration", &health_, &ExplorationHealth::Describe);
+  if (learner_) diagnostics_.add("learning", [this](auto& status) { DescribeLearning(status); });
   map_subscriber_ = nh.subscribe("map", 1, &ExplorationNode::OnMap, this);
   pause_service_ = private_nh.advertiseService("pause", &ExplorationNode::OnPause, this);
   timer_ = nh.createWallTimer(ros::WallDuration(kCycle_s), [this](const auto&) { OnTimer(); });
@@ -152,6 +155,18 @@ void ExplorationNode::Report(const ExplorerOutput& output) {
   }
   state_ = output.state;
   health_.Note(output, explorer_.progress());
+}
+
+void ExplorationNode::DescribeLearning(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  const OnlineLearningStatus learning = learner_->status();
+  if (learning.problem.empty()) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "learns beside the exploration");
+  } else {
+    status.summary(diagnostic_msgs::DiagnosticStatus::WARN, learning.problem);
+  }
+  status.add("decisions remembered", learning.decisions);
+  status.add("updates of the policy", learning.updates);
+  status.addf("error of the values", "%.4f", learning.critic_loss);
 }
 
 void ExplorationNode::Publish() {

@@ -17,6 +17,7 @@
 #include "exploration_health.h"
 #include "explore_server.h"
 #include "goal_client.h"
+#include "hv_explore_sac/online/online_learner.h"
 #include "parameters.h"
 
 namespace hv::explore {
@@ -40,10 +41,12 @@ class ExplorationNode {
   void Act(const ExplorerOutput& output);
   void Report(const ExplorerOutput& output);
   void Publish();
+  void DescribeLearning(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   const NodeParameters parameters_;
   tf2_ros::Buffer transforms_;
   tf2_ros::TransformListener listener_;
+  std::shared_ptr<OnlineLearner> learner_;  ///< null: nothing is learned
   Explorer explorer_;
   GoalClient navigation_;
   ExploreServer server_;

@@ -270,6 +270,7 @@ void Explorer::NothingLeft(Outlook outlook, ExplorerOutput& output) {
 
 void Explorer::Conclude(ExplorationEnd end, const std::string& reason, ExplorerOutput& output) {
   StopDriving(output);
+  if (end == ExplorationEnd::kExplored) chooser_->End();
   if (!run_->task.return_home || !AllowsReturn(end)) {
     Finish(end, reason, output);
     return;

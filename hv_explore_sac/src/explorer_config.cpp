@@ -96,12 +96,16 @@ void ExplorerConfig::Describe(ConfigVisitor& visitor) {
   visitor.Section("places", places, "frontiers and viewpoints");
   visitor.Section("choice", choice, "how the next goal is chosen");
   visitor.Section("goals", goals, "when goals have been reached or failed, and when it ends");
+  visitor.Section("online_learning", online_learning, "learning beside the exploration");
 }
 
 void ExplorerConfig::Validate(ConfigProblems& problems) const {
   places.Validate(problems);
   choice.Validate(problems);
   goals.Validate(problems);
+  online_learning.Validate(problems);
+  problems.Require(!online_learning.enabled || choice.planner == kLearnedPlanner,
+                   "online_learning.enabled", "needs choice.planner sac");
 }
 
 ExplorationConfig ExplorerConfig::InCells(double cell_m) const {

@@ -123,6 +123,10 @@ ViewpointGoal GoalChooser::Choose(bool arrived) {
   return GoalAt(decision.goal);
 }
 
+void GoalChooser::End() {
+  if (planner_ && model_->robot() >= 0) planner_->End(*model_);
+}
+
 ViewpointGoal GoalChooser::GoalAt(int node) const {
   const Observation::Node& at = observation_.node(node);
   ViewpointGoal goal;

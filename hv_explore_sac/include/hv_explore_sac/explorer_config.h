@@ -4,6 +4,7 @@
 
 #include "hv_core/config.h"
 #include "hv_explore_sac/exploration_config.h"
+#include "hv_explore_sac/online/online_config.h"
 #include "hv_explore_sac/loop_guard.h"
 #include "hv_explore_sac/planner.h"
 #include "hv_navigation/navigation_config.h"
@@ -60,6 +61,7 @@ struct ExplorerConfig {
   PlacesConfig places;
   ChoiceConfig choice;
   GoalsConfig goals;
+  OnlineLearningConfig online_learning;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

@@ -37,6 +37,9 @@ class Planner {
 
   /// `observation` was made from `model` and offers at least one action; some node has utility.
   virtual Decision Choose(const Observation& observation, const ExplorationModel& model) = 0;
+
+  /// Nothing is left to explore. No other call follows.
+  virtual void End(const ExplorationModel& model) { static_cast<void>(model); }
 };
 
 /// What a planner may be made from. The map is for the oracle alone.

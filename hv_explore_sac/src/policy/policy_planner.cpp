@@ -17,6 +17,7 @@ Decision PolicyPlanner::Choose(const Observation& observation, const Exploration
   }
   Eigen::Index best = 0;
   preference.maxCoeff(&best);
+  choice_ = static_cast<int>(best);
   const int node = builder_.goals()[static_cast<std::size_t>(best)].node;
   goal_ = model.graph().CellOf(observation.node(node).viewpoint);
   return {observation.FirstHopTo(node), node};
