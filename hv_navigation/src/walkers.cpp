@@ -82,6 +82,8 @@ void WalkConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("most_mps", most_mps, "and fastest [m/s]");
   visitor.Field("any_way_mps", any_way_mps,
                 "as long as the robot moves, they may come from any side as fast [m/s]");
+  visitor.Field("any_way_m", any_way_m,
+                "and from so much nearer than they were noticed: what is seen of them lags [m]");
   visitor.Field("horizon_s", horizon_s, "they go on straight for so long [s]");
   visitor.Field("radius_m", radius_m, "of a person [m]");
 }
@@ -90,6 +92,7 @@ void WalkConfig::Validate(ConfigProblems& problems) const {
   problems.Require(least_mps >= 0.0, "walk.least_mps", "must not be negative");
   problems.Require(most_mps >= least_mps, "walk.most_mps", "must be at least walk.least_mps");
   problems.Require(any_way_mps >= 0.0, "walk.any_way_mps", "must not be negative");
+  problems.Require(any_way_m >= 0.0, "walk.any_way_m", "must not be negative");
   problems.Require(horizon_s > 0.0, "walk.horizon_s", "must be positive");
   problems.Require(radius_m > 0.0, "walk.radius_m", "must be positive");
 }
@@ -111,7 +114,8 @@ bool Walkers::MayReach(const Footprint& footprint, const PlanarPose& pose, Time 
   const Box robot = BoxOf(footprint);
   const PlanarPose T_robot = pose.Inverse();
   const auto may_reach = [&](const Walker& walker) {
-    const double gone_m = config_.any_way_mps * std::max(0.0, then - walker.stamp);
+    const double gone_m =
+        config_.any_way_m + config_.any_way_mps * std::max(0.0, then - walker.stamp);
     return robot.DistanceTo(T_robot * walker.place) <= config_.radius_m + gone_m;
   };
   return std::any_of(walkers_.begin(), walkers_.end(), may_reach) ||

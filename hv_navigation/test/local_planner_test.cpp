@@ -182,8 +182,17 @@ TEST(LocalPlannerTest, LetsAPersonCross) {
 struct PersonInHall {
   Eigen::Vector2d from;
   Eigen::Vector2d velocity;
+  double turns_s = 1e9;  ///< walks on with `then` from this time on
+  Eigen::Vector2d then = Eigen::Vector2d::Zero();
+  double lag_s = 0.0;  ///< by which the person is noticed too late
 
-  Eigen::Vector2d At(double time_s) const { return from + time_s * velocity; }
+  Eigen::Vector2d At(double time_s) const {
+    return from + std::min(time_s, turns_s) * velocity + std::max(0.0, time_s - turns_s) * then;
+  }
+  Walker NoticedAt(double time_s, Time stamp) const {
+    const Eigen::Vector2d way = At(time_s - lag_s) - At(time_s - lag_s - 0.3);
+    return {stamp, At(time_s - lag_s), way.normalized()};
+  }
   double DistanceTo(const PlanarPose& robot, const Footprint& footprint, double time_s) const {
     const Eigen::Vector2d there = robot.Inverse() * At(time_s);
     const Eigen::Vector2d most(footprint.front_m, footprint.half_width_m);
@@ -211,7 +220,7 @@ Encounter Meet(const PersonInHall& person) {
     FillCells(cells, at - Eigen::Vector2d(0.2, 0.2), at + Eigen::Vector2d(0.2, 0.2));
     const ClearanceGrid grid = Clearances(cells);
     const Time now = Time::FromSeconds(100.0 + result.time_s);
-    const Walkers walkers(walk, {{now, at, person.velocity.normalized()}});
+    const Walkers walkers(walk, {person.NoticedAt(result.time_s, now)});
     run.Step({grid, &walkers, now});
     const Velocity& velocity = run.robot.velocity();
     if (std::abs(velocity.linear_mps) > 0.02 || std::abs(velocity.angular_rps) > 0.05) {
@@ -239,6 +248,21 @@ TEST(LocalPlannerTest, MovesIntoNobodyWhoWalks) {
       }
       const Encounter towards = Meet({{3.0 + begin_m, 2.5}, {-speed_mps, 0.0}});
       EXPECT_GT(towards.nearest_moving_m, 0.2) << begin_m << " " << speed_mps;
+    }
+  }
+}
+
+TEST(LocalPlannerTest, MovesIntoNobodyWhoTurnsTowardsIt) {
+  // Along the hall ahead of the robot, or across it, and then straight at it.
+  const double speed_mps = 1.3;
+  for (double turns_s = 0.4; turns_s < 4.0; turns_s += 0.4) {
+    for (const double beside_m : {-0.1, 0.2}) {
+      const PersonInHall person{{4.5, 2.5 + beside_m - speed_mps * turns_s},
+                                {0.0, speed_mps},
+                                turns_s,
+                                {-speed_mps, 0.0},
+                                0.2};
+      EXPECT_GT(Meet(person).nearest_moving_m, 0.3) << turns_s << " " << beside_m;
     }
   }
 }

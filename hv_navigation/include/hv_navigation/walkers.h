@@ -17,7 +17,8 @@ namespace hv::navigation {
 struct WalkConfig {
   double least_mps = 0.6;
   double most_mps = 1.3;
-  double any_way_mps = 1.2;
+  double any_way_mps = 1.3;
+  double any_way_m = 0.1;
   double horizon_s = 1.5;
   double radius_m = 0.3;
 
