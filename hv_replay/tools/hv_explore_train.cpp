@@ -27,6 +27,7 @@ struct Arguments {
   std::string maps;
   std::string config;
   std::string out;
+  std::string labels;
   bool resume = false;
   int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 };
@@ -39,6 +40,9 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--out", arguments.out, "folder of the training, created when missing")
       ->required();
   app.add_flag("--resume", arguments.resume, "go on from the last round that --out holds");
+  app.add_option("--labels", arguments.labels,
+                 "folder of a training whose first measurements are taken over, for trying other "
+                 "networks or other learning on them");
   app.add_option("--threads", arguments.threads, "of each process")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -92,6 +96,7 @@ int Run(const Arguments& arguments, hv::explore::Ranks& ranks) {
   Trainer trainer(config, maps, arguments.out, ranks, [&](const std::string& what, double share) {
     if (ranks.rank() == 0) progress.Update(what, share);
   });
+  if (!arguments.labels.empty()) trainer.TakeLabels(arguments.labels);
   if (arguments.resume) trainer.Resume();
   trainer.Run();
   if (ranks.rank() != 0) return 0;

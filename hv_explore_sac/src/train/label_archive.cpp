@@ -19,7 +19,10 @@ void Append(std::vector<LabelledState> more, std::vector<LabelledState>& labels)
 }  // namespace
 
 LabelArchive::LabelArchive(std::string folder, int rank)
-    : folder_(std::move(folder)), prefix_("labels_" + std::to_string(rank) + "_") {}
+    : LabelArchive(std::move(folder), "labels_" + std::to_string(rank) + "_") {}
+
+LabelArchive::LabelArchive(std::string folder, std::string prefix)
+    : folder_(std::move(folder)), prefix_(std::move(prefix)) {}
 
 void LabelArchive::Clear() const {
   std::vector<fs::path> old;
@@ -48,6 +51,17 @@ std::vector<LabelledState> LabelArchive::Collect(const std::string& name, const 
     Append(std::move(made), labels);
   }
   return labels;
+}
+
+void LabelArchive::TakeOver(const std::string& folder, const std::string& name,
+                            std::size_t maps_there, std::size_t maps_here) const {
+  const LabelArchive other(folder, prefix_);
+  for (std::size_t part = 0;; ++part) {
+    const std::size_t end = (part + 1) * kMapsPerPart;
+    const std::string path = other.PartPath(name, part);
+    if (!fs::exists(path) || std::min(end, maps_there) != std::min(end, maps_here)) return;
+    fs::copy_file(path, PartPath(name, part), fs::copy_options::overwrite_existing);
+  }
 }
 
 std::vector<LabelledState> LabelArchive::Read(const std::string& name) const {

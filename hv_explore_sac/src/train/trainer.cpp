@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include <yaml-cpp/yaml.h>
+
 #include "hv_core/error.h"
 #include "hv_explore_sac/policy/policy_planner.h"
 #include "hv_explore_sac/train/policy_fit.h"
@@ -22,6 +24,15 @@ std::string RoundName(int round) { return std::to_string(round + 1); }
 
 /// What random numbers are for; each purpose in each round has its own.
 enum Purpose : std::uint64_t { kLabels, kGauge, kFit, kFirstEpisodes, kEpisodes, kPurposes };
+
+/// Everything that the labels of the first round depend on but the maps. More crossed maps come
+/// after fewer.
+std::string WhatLabelsDependOn(TrainConfig config) {
+  config.labels.crossed = 0;
+  return ToYaml(config.exploration) + ToYaml(config.planner) + ToYaml(config.guard) +
+         ToYaml(config.policy) + ToYaml(config.split) + ToYaml(config.labels) +
+         std::to_string(config.sac.seed);
+}
 
 constexpr std::uint64_t kSeedStep = 1U << 24U;  // more than there are maps, or episodes of SAC
 constexpr std::uint64_t kCycleStep = 1000;      // more than there are episodes in a cycle
@@ -65,7 +76,39 @@ void Trainer::Begin() {
   utility_travel_ =
       Validate(validation_, config_.exploration, sensor_, RolloutOf(nullptr), ranks_).travel;
   best_travel_ = utility_travel_;
+  if (!labels_from_.empty()) CopyLabels();
   Save();
+}
+
+void Trainer::TakeLabels(const std::string& folder) {
+  const std::string path = folder + "/state.bin";
+  const nn::Checkpoint other = nn::Checkpoint::Read(path);
+  TrainConfig config;
+  ReadConfig(ParseYaml(other.text, path), path, config);
+  if (WhatLabelsDependOn(config) != WhatLabelsDependOn(config_) ||
+      static_cast<int>(other.Number("ranks")) != ranks_.size()) {
+    throw InputError(path + ": measured with another configuration");
+  }
+  labels_from_ = folder;
+}
+
+/// Travel on the maps for validation tells whether they are the same.
+void Trainer::CopyLabels() const {
+  const std::string path = labels_from_ + "/state.bin";
+  const nn::Checkpoint other = nn::Checkpoint::Read(path);
+  if (other.Number("utility_travel") != utility_travel_) {
+    throw InputError(path + ": measured on other maps");
+  }
+  TrainConfig config;
+  ReadConfig(ParseYaml(other.text, path), path, config);
+  archive_.TakeOver(labels_from_, RoundName(0), MapsToLabel(config.labels),
+                    MapsToLabel(config_.labels));
+}
+
+/// By this rank in a round.
+std::size_t Trainer::MapsToLabel(const LabelConfig& labels) const {
+  return ShareOf(training_, ranks_).size() +
+         static_cast<std::size_t>(labels.crossed / ranks_.size());
 }
 
 void Trainer::RunRound() {
@@ -196,6 +239,7 @@ void Trainer::Save() const {
   state.text = ToYaml(config_);
   state.PutNumber("round", round_);
   state.PutNumber("cycle", cycle_);
+  state.PutNumber("ranks", ranks_.size());
   state.PutNumber("utility_travel", utility_travel_);
   state.PutNumber("best_travel", best_travel_);
   state.Write(PathOf("state.bin"));
@@ -205,6 +249,10 @@ void Trainer::Resume() {
   const nn::Checkpoint state = nn::Checkpoint::Read(PathOf("state.bin"));
   if (state.text != ToYaml(config_)) {
     throw InputError(PathOf("state.bin") + ": was made with another configuration");
+  }
+  const int ranks = static_cast<int>(state.Number("ranks"));
+  if (ranks != ranks_.size()) {
+    throw InputError(PathOf("state.bin") + ": was made by " + std::to_string(ranks) + " ranks");
   }
   round_ = static_cast<int>(state.Number("round"));
   cycle_ = static_cast<int>(state.Number("cycle"));

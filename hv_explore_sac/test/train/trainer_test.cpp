@@ -108,6 +108,46 @@ TEST_F(TrainerTest, LearnsNothingFromAnEarlierTraining) {
   ExpectSame(again.curve().back().gain, fresh.curve().back().gain);
 }
 
+TEST_F(TrainerTest, TakesOverWhatAnotherHasMeasured) {
+  const auto quiet = [](const std::string&, double) {};
+  config_.improvement.rounds = 1;
+  const std::string measured = Folder("measured");
+  Make(measured, quiet).Run();
+  config_.sac.temperature = 0.5;
+  const std::string folder = Folder("taking");
+  Trainer taking = Make(folder, quiet);
+  taking.TakeLabels(measured);
+  taking.Run();
+  Trainer alone = Make(Folder("alone"), quiet);
+  alone.Run();
+  EXPECT_EQ(taking.curve().back().states, alone.curve().back().states);
+  ExpectSame(taking.curve().back().loss, alone.curve().back().loss);
+
+  // More maps than were measured: those of the last part are measured anew.
+  config_.labels.crossed = 2;
+  Trainer more = Make(Folder("more"), quiet);
+  more.TakeLabels(measured);
+  more.Run();
+  Trainer more_alone = Make(Folder("more_alone"), quiet);
+  more_alone.Run();
+  EXPECT_GT(more.curve().back().states, alone.curve().back().states);
+  ExpectSame(more.curve().back().loss, more_alone.curve().back().loss);
+}
+
+TEST_F(TrainerTest, TakesOverNothingMeasuredOtherwise) {
+  const auto quiet = [](const std::string&, double) {};
+  config_.improvement.rounds = 1;
+  const std::string measured = Folder("measured_so");
+  Make(measured, quiet).Run();
+  const std::vector<ExplorationMap> maps(maps_.rbegin(), maps_.rend());
+  Trainer other_maps(config_, maps, Folder("others"), ranks_, quiet);
+  other_maps.TakeLabels(measured);
+  EXPECT_THROW(other_maps.Run(), InputError);
+  config_.labels.share = 0.3;
+  EXPECT_THROW(Make(Folder("otherwise"), quiet).TakeLabels(measured), InputError);
+  EXPECT_THROW(Make(Folder("nothing"), quiet).TakeLabels(Folder("nowhere")), InputError);
+}
+
 TEST_F(TrainerTest, NeedsMapsToLearnFrom) {
   config_.split.held_out = 4;
   EXPECT_THROW(Make(Folder("none"), [](const std::string&, double) {}), InputError);

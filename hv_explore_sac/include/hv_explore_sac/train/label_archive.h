@@ -26,10 +26,16 @@ class LabelArchive {
                                      const LabelInputs& inputs, std::uint64_t seed,
                                      const Report& report) const;
 
+  /// Copies what the same rank of another training has made under this name of `maps_there` maps,
+  /// as far as Collect() would make the same of `maps_here` maps that begin with the same ones.
+  void TakeOver(const std::string& folder, const std::string& name, std::size_t maps_there,
+                std::size_t maps_here) const;
+
   /// What Collect() has made under this name.
   std::vector<LabelledState> Read(const std::string& name) const;
 
  private:
+  LabelArchive(std::string folder, std::string prefix);
   std::string PartPath(const std::string& name, std::size_t part) const;
 
   std::string folder_;

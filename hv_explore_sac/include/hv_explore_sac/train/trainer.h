@@ -36,6 +36,10 @@ class Trainer {
   /// time that SAC's policy was tried.
   /// Throws InputError when there is none.
   void Resume();
+  /// Run() takes over what another training has measured in its first round, which depends on no
+  /// network: for trying other ones, or other ways to learn. Throws InputError when what it depends
+  /// on differs, Run() when the maps do.
+  void TakeLabels(const std::string& folder);
   /// All that is left.
   void Run();
 
@@ -47,6 +51,8 @@ class Trainer {
 
  private:
   void Begin();
+  void CopyLabels() const;
+  std::size_t MapsToLabel(const LabelConfig& labels) const;
   void RunRound();
   Rollout RolloutOf(std::shared_ptr<const PolicyNetwork> network) const;
   void CollectLabels();
@@ -73,6 +79,7 @@ class Trainer {
   int cycle_ = 0;                ///< of SAC
   double utility_travel_ = 0.0;  ///< on the maps for validation [cells]
   double best_travel_ = 0.0;
+  std::string labels_from_;  ///< folder of another training; empty: of none
   std::shared_ptr<const PolicyNetwork> best_;
   std::vector<LabelledState> labels_;  ///< of the kept rounds
   std::vector<LabelledState> gauge_;   ///< of the present round on maps for validation
