@@ -28,9 +28,9 @@ void Belief::Assign(const OccupancyGrid& grid) {
   for (const std::int8_t value : grid.cells) Set(index++, FromGrid(value));
 }
 
-int Belief::FirstBlocked(const Eigen::Vector2i& from, const Eigen::Vector2i& to) const {
+int Belief::FirstBlocked(const Eigen::Vector2i& from, const Eigen::Vector2i& to, int first) const {
   int blocked = kNone;
-  WalkLine(from, to, [&](int x, int y) {
+  WalkLine(from, to, CellOf(first), [&](int x, int y) {
     const int index = IndexOf({x, y});
     if (At(index) == Cell::kFree) return true;
     blocked = index;

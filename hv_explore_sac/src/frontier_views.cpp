@@ -48,7 +48,7 @@ void FrontierViews::Follow(int viewpoint, const Eigen::Vector2i& cell, const Bel
               views.end());
   for (View& view : views) {
     if (view.blocked == Belief::kNone || belief.At(view.blocked) != Cell::kFree) continue;
-    view.blocked = belief.FirstBlocked(cell, frontiers.CellOf(view.point));
+    view.blocked = belief.FirstBlocked(cell, frontiers.CellOf(view.point), view.blocked);
   }
 }
 

@@ -110,7 +110,8 @@ void ViewpointGraph::Offer(int viewpoint, Neighbor neighbor, const Belief& belie
   };
   const bool full = nearest.size() >= Index(config_.neighbors);
   if (full && !nearer(neighbor, nearest.back())) return;
-  neighbor.blocked = BlockedBetween(viewpoint, neighbor.viewpoint, belief);
+  const auto [from, to] = LineBetween(viewpoint, neighbor.viewpoint, belief);
+  neighbor.blocked = belief.FirstBlocked(from, to);
   if (full) nearest.pop_back();
   nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), neighbor, nearer), neighbor);
   stale_[Index(viewpoint)] = 1;
@@ -120,7 +121,8 @@ void ViewpointGraph::RecheckEdges(const Belief& belief) {
   for (int viewpoint = 0; viewpoint < size(); ++viewpoint) {
     for (Neighbor& neighbor : nearest_[Index(viewpoint)]) {
       if (neighbor.blocked == Belief::kNone || belief.At(neighbor.blocked) != Cell::kFree) continue;
-      neighbor.blocked = BlockedBetween(viewpoint, neighbor.viewpoint, belief);
+      const auto [from, to] = LineBetween(viewpoint, neighbor.viewpoint, belief);
+      neighbor.blocked = belief.FirstBlocked(from, to, neighbor.blocked);
       if (neighbor.blocked == Belief::kNone) stale_[Index(viewpoint)] = 1;
     }
   }
@@ -137,12 +139,12 @@ void ViewpointGraph::ListEdges(int viewpoint) {
   }
 }
 
-int ViewpointGraph::BlockedBetween(int first, int second, const Belief& belief) const {
-  // Always in the same direction: the line back passes other cells.
+/// Always in the same direction: the line back passes other cells.
+std::pair<Eigen::Vector2i, Eigen::Vector2i> ViewpointGraph::LineBetween(
+    int first, int second, const Belief& belief) const {
   const Eigen::Vector2i& a = cells_[Index(first)];
   const Eigen::Vector2i& b = cells_[Index(second)];
-  return belief.IndexOf(a) < belief.IndexOf(b) ? belief.FirstBlocked(a, b)
-                                               : belief.FirstBlocked(b, a);
+  return belief.IndexOf(a) < belief.IndexOf(b) ? std::pair(a, b) : std::pair(b, a);
 }
 
 }  // namespace hv::explore

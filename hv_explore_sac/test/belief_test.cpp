@@ -34,6 +34,26 @@ TEST(WalkLineTest, SharesEdgesFromFirstToBeforeLast) {
   }
 }
 
+TEST(WalkLineTest, GoesOnFromAnyOfItsCells) {
+  const auto cells_from = [](const Eigen::Vector2i& to, const Eigen::Vector2i& first) {
+    std::vector<Eigen::Vector2i> cells;
+    WalkLine({3, -2}, to, first, [&cells](int x, int y) {
+      cells.emplace_back(x, y);
+      return true;
+    });
+    return cells;
+  };
+  for (const Eigen::Vector2i& to : {Eigen::Vector2i(12, 5), Eigen::Vector2i(-9, 4),
+                                    Eigen::Vector2i(3, 8), Eigen::Vector2i(-5, -13)}) {
+    const std::vector<Eigen::Vector2i> whole = cells_from(to, {3, -2});
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      const std::vector<Eigen::Vector2i> rest(whole.begin() + static_cast<std::ptrdiff_t>(i),
+                                              whole.end());
+      EXPECT_EQ(cells_from(to, whole[i]), rest);
+    }
+  }
+}
+
 TEST(BeliefTest, RemembersWhatChanged) {
   Belief belief(5, 4);
   belief.Set(7, Cell::kFree);

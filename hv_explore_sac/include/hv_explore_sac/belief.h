@@ -49,7 +49,11 @@ class Belief {
   /// The first cell of the line from `from` to `to`, without `to`, that is not known to be free;
   /// kNone when all are. Both ends must lie inside.
   static constexpr int kNone = -1;
-  int FirstBlocked(const Eigen::Vector2i& from, const Eigen::Vector2i& to) const;
+  int FirstBlocked(const Eigen::Vector2i& from, const Eigen::Vector2i& to) const {
+    return FirstBlocked(from, to, IndexOf(from));
+  }
+  /// The same where all cells of the line before one of them are known to be free.
+  int FirstBlocked(const Eigen::Vector2i& from, const Eigen::Vector2i& to, int first) const;
 
   struct CellChange {
     int index;

@@ -4,8 +4,8 @@
 
 #include "hv_core/config.h"
 #include "hv_explore_sac/exploration_config.h"
-#include "hv_explore_sac/online/online_config.h"
 #include "hv_explore_sac/loop_guard.h"
+#include "hv_explore_sac/online/online_config.h"
 #include "hv_explore_sac/planner.h"
 #include "hv_navigation/navigation_config.h"
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -56,7 +57,8 @@ class ViewpointGraph {
   void Offer(int viewpoint, Neighbor neighbor, const Belief& belief);
   void RecheckEdges(const Belief& belief);
   void ListEdges(int viewpoint);
-  int BlockedBetween(int first, int second, const Belief& belief) const;
+  std::pair<Eigen::Vector2i, Eigen::Vector2i> LineBetween(int first, int second,
+                                                          const Belief& belief) const;
 
   ViewpointConfig config_;
   Eigen::Vector2i low_;
