@@ -15,7 +15,7 @@ packages=(
   libtf2-geometry-msgs-dev libtf2-ros-dev libvisualization-msgs-dev libyaml-cpp-dev
   python3-actionlib python3-actionlib-msgs python3-diagnostic-msgs python3-geometry-msgs python3-move-base-msgs python3-nav-msgs python3-numpy python3-rosbag
   python3-roslaunch python3-rosmsg python3-rosnode python3-rosservice python3-rostest
-  python3-rostopic python3-sensor-msgs python3-std-srvs python3-tf2-msgs python3-visualization-msgs
+  python3-rostopic python3-sensor-msgs python3-std-srvs python3-tf2-msgs python3-visualization-msgs python3-yaml
   ros-actionlib-msgs ros-geometry-msgs ros-message-generation ros-message-runtime ros-move-base-msgs ros-nav-msgs ros-sensor-msgs
   robin-map-dev ros-std-msgs rosbash)
 
