@@ -6,7 +6,6 @@
 namespace hv::explore {
 namespace {
 
-constexpr int kTile = 16;  ///< cells along the edge of a tile
 constexpr int kMostTiles = 1000;
 
 /// Reads one block after the other, counting lines for messages.
@@ -53,20 +52,20 @@ class TilesReader {
 
   void AppendRow(ExplorationMap& map) {
     const int tiles = static_cast<int>(line_.size());
-    if (tiles > kMostTiles || map.height >= kMostTiles * kTile) Fail("more than 1000 tiles");
-    if (map.width == 0) map.width = kTile * tiles;
-    if (map.width != kTile * tiles) {
+    if (tiles > kMostTiles || map.height >= kMostTiles * kTileCells) Fail("more than 1000 tiles");
+    if (map.width == 0) map.width = kTileCells * tiles;
+    if (map.width != kTileCells * tiles) {
       Fail("has " + std::to_string(tiles) + " tiles where the rows before have " +
-           std::to_string(map.width / kTile));
+           std::to_string(map.width / kTileCells));
     }
     std::vector<char> row;
     for (const char tile : line_) {
       if (tile != '.' && tile != '#' && tile != 'S')
         Fail(std::string("unknown tile `") + tile + "`");
-      row.insert(row.end(), kTile, tile == '#' ? 0 : 1);
+      row.insert(row.end(), kTileCells, tile == '#' ? 0 : 1);
     }
-    for (int i = 0; i < kTile; ++i) map.free.insert(map.free.end(), row.begin(), row.end());
-    map.height += kTile;
+    for (int i = 0; i < kTileCells; ++i) map.free.insert(map.free.end(), row.begin(), row.end());
+    map.height += kTileCells;
   }
 
   void Finish(const ExplorationMap& map) const {

@@ -253,7 +253,7 @@ TEST(LocalPlannerTest, MovesIntoNobodyWhoWalks) {
 }
 
 TEST(LocalPlannerTest, MovesIntoNobodyWhoTurnsTowardsIt) {
-  // Along the hall ahead of the robot, or across it, and then straight at it.
+  // Across the hall, ahead of the robot, and then straight at it; seen a little late.
   const double speed_mps = 1.3;
   for (double turns_s = 0.4; turns_s < 4.0; turns_s += 0.4) {
     for (const double beside_m : {-0.1, 0.2}) {

@@ -39,10 +39,12 @@ void Declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--config", arguments.config, "configuration of the training (YAML)")->required();
   app.add_option("--out", arguments.out, "folder of the training, created when missing")
       ->required();
-  app.add_flag("--resume", arguments.resume, "go on from the last round that --out holds");
+  CLI::Option* resume =
+      app.add_flag("--resume", arguments.resume, "go on from the last round that --out holds");
   app.add_option("--labels", arguments.labels,
                  "folder of a training whose first measurements are taken over, for trying other "
-                 "networks or other learning on them");
+                 "networks or other learning on them")
+      ->excludes(resume);
   app.add_option("--threads", arguments.threads, "of each process")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

@@ -26,6 +26,9 @@ struct ExplorationMap {
   int CountFree() const;
 };
 
+/// Cells along the edge of a tile of a tiles text file.
+inline constexpr int kTileCells = 16;
+
 /// Reads all maps of a tiles text file (blocks of a head line `map NAME START_X START_Y ...` and
 /// rows of `.`, `S` (free) and `#`, each tile 16 cells wide), of a folder of PNG or PGM images (of
 /// the public dungeon benchmark: bright is free, the start is marked by grey 208), or the one of a

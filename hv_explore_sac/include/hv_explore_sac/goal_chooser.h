@@ -60,9 +60,9 @@ class GoalChooser {
   /// The next goal, after Look() has told that there are some. `arrived`: the robot stands where a
   /// choice has led it, so that loops would show; `in_loop()` tells whether they do.
   ViewpointGoal Choose(bool arrived);
+  bool in_loop() const { return in_loop_; }
   /// Nothing is left to explore, as far as the map of the last Look() tells.
   void End();
-  bool in_loop() const { return in_loop_; }
 
   /// Where the way to a goal turns, from the robot on [m]; empty when there is none.
   std::vector<Eigen::Vector2d> WayTo(const ViewpointGoal& goal) const;

@@ -24,9 +24,7 @@ int CountGone(const std::vector<Eigen::Vector2i>& before, const std::vector<Eige
 }  // namespace
 
 ExperienceRecorder::Moment::Moment(const ExplorationModel& model)
-    : free_cells(model.belief().free_count()),
-      block(model.frontiers().block()),
-      centroid(model.frontiers().Centroid()) {
+    : free_cells(model.belief().free_count()), centroid(model.frontiers().Centroid()) {
   for (const int point : model.frontiers().points()) {
     frontiers.push_back(model.frontiers().CellOf(point));
   }
@@ -87,7 +85,7 @@ float ExperienceRecorder::RewardUntil(const Moment& now, const ExplorationModel&
   const PolicyScale scale(model.config());
   const auto unit = static_cast<double>(scale.unit);
   const double known = std::max(1, now.free_cells);
-  const int gone = CountGone(decided_->frontiers, now.frontiers, now.block);
+  const int gone = CountGone(decided_->frontiers, now.frontiers, model.frontiers().block());
   Transition transition;
   transition.explored_before = std::min(1.0, decided_->free_cells / known);
   transition.explored_after = 1.0;

@@ -105,7 +105,7 @@ void OnlineLearner::Run() {
   while (true) {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [this] { return stop_ || !waiting_.empty(); });
-    if (stop_) break;
+    if (waiting_.empty()) break;
     const nn::Episode episode = std::move(waiting_.front());
     waiting_.pop_front();
     busy_ = true;

@@ -9,7 +9,6 @@
 namespace hv::explore {
 namespace {
 
-constexpr int kTile = 16;
 constexpr double kLeastShare = 0.3;      ///< of the width or height, on either side of the cut
 constexpr double kLeastConnected = 0.9;  ///< of the free cells
 constexpr int kTries = 1000;
@@ -96,7 +95,7 @@ class Crossing {
 
   int Cut(int length) {
     const double share = kLeastShare + (1.0 - 2.0 * kLeastShare) * Uniform(random_);
-    return kTile * static_cast<int>(share * length / kTile);
+    return kTileCells * static_cast<int>(share * length / kTileCells);
   }
 
   /// Starts anywhere; false when too much of the map cannot be reached from there.

@@ -76,7 +76,7 @@ void Trainer::Begin() {
   utility_travel_ =
       Validate(validation_, config_.exploration, sensor_, RolloutOf(nullptr), ranks_).travel;
   best_travel_ = utility_travel_;
-  if (!labels_from_.empty()) CopyLabels();
+  if (measured_) TakeOver(*measured_);
   Save();
 }
 
@@ -89,20 +89,14 @@ void Trainer::TakeLabels(const std::string& folder) {
       static_cast<int>(other.Number("ranks")) != ranks_.size()) {
     throw InputError(path + ": measured with another configuration");
   }
-  labels_from_ = folder;
+  measured_ = {folder, other.Number("utility_travel"), MapsToLabel(config.labels)};
 }
 
-/// Travel on the maps for validation tells whether they are the same.
-void Trainer::CopyLabels() const {
-  const std::string path = labels_from_ + "/state.bin";
-  const nn::Checkpoint other = nn::Checkpoint::Read(path);
-  if (other.Number("utility_travel") != utility_travel_) {
-    throw InputError(path + ": measured on other maps");
+void Trainer::TakeOver(const Measured& measured) const {
+  if (measured.utility_travel != utility_travel_) {
+    throw InputError(measured.folder + ": measured on other maps");
   }
-  TrainConfig config;
-  ReadConfig(ParseYaml(other.text, path), path, config);
-  archive_.TakeOver(labels_from_, RoundName(0), MapsToLabel(config.labels),
-                    MapsToLabel(config_.labels));
+  archive_.TakeOver(measured.folder, RoundName(0), measured.maps, MapsToLabel(config_.labels));
 }
 
 /// By this rank in a round.

@@ -148,6 +148,16 @@ TEST_F(OnlineLearnerTest, GoesOnFromItsFolder) {
   EXPECT_EQ(learner->status().updates, before.updates + 4 * 8);
 }
 
+TEST_F(OnlineLearnerTest, RemembersWhatWasAddedLast) {
+  nn::Episode episode;
+  for (int k = 0; k < 8; ++k) episode.steps.push_back({TwoGoals(), k % 2, 1.0F, {}});
+  {
+    const auto learner = Make();
+    for (int i = 0; i < 5; ++i) learner->Add(episode);
+  }
+  EXPECT_EQ(Make()->status().decisions, 40U);
+}
+
 TEST_F(OnlineLearnerTest, SaysWhatIsWrongWithItsFolder) {
   Make();
   for (const char* name : {"learner.bin", "replay.bin"}) {

@@ -35,7 +35,6 @@ class ExperienceRecorder {
   struct Moment {
     explicit Moment(const ExplorationModel& model);
     int free_cells;
-    int block;
     std::vector<Eigen::Vector2i> frontiers;
     Eigen::Vector2d centroid;
   };

@@ -29,14 +29,14 @@ struct OnlineLearningStatus {
 /// it began with.
 ///
 /// The folder holds policy.bin, weights like those of hv_explore_train, and learner.bin and
-/// replay.bin, from which the next session goes on. They are written at the end of each exploration
-/// and of this object. Thread-safe.
+/// replay.bin, from which the next session goes on. They are written when an exploration is
+/// complete and at the end of this object. Thread-safe.
 class OnlineLearner {
  public:
   /// Goes on from the folder, else from `policy`. Throws InputError for a folder that cannot be
   /// made, that is damaged, or that belongs to another network or capacity.
   OnlineLearner(const OnlineLearningConfig& config, const PolicyNetwork& policy);
-  /// Leaves out what has not been learned yet, and saves.
+  /// Remembers what has not been learned from yet, and saves.
   ~OnlineLearner();
 
   void Add(nn::Episode episode);

@@ -10,8 +10,8 @@ namespace hv::explore {
 
 /// A new map out of two: of `maps`, what lies left of a column (or above a row) comes from one, the
 /// rest from another one of the same size, each perhaps mirrored. Kept is what is connected with
-/// the start; nearly all is. Cuts lie at multiples of the tiles of 16 cells that dungeon maps are
-/// made of. Depends on the seed alone. Throws InputError when no two maps go together.
+/// the start; nearly all is. Cuts lie between the tiles that dungeon maps are made of. Depends on
+/// the seed alone. Throws InputError when no two maps go together.
 ExplorationMap CrossedMap(const std::vector<const ExplorationMap*>& maps, std::uint64_t seed);
 
 /// Maps to learn from: those given, then crossed ones, which are made when they are asked for, so

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,8 +51,15 @@ class Trainer {
   const std::shared_ptr<const PolicyNetwork>& best() const { return best_; }
 
  private:
+  /// What another training has measured first.
+  struct Measured {
+    std::string folder;
+    double utility_travel;  ///< tells whether the maps are the same
+    std::size_t maps;       ///< of this rank
+  };
+
   void Begin();
-  void CopyLabels() const;
+  void TakeOver(const Measured& measured) const;
   std::size_t MapsToLabel(const LabelConfig& labels) const;
   void RunRound();
   Rollout RolloutOf(std::shared_ptr<const PolicyNetwork> network) const;
@@ -79,7 +87,7 @@ class Trainer {
   int cycle_ = 0;                ///< of SAC
   double utility_travel_ = 0.0;  ///< on the maps for validation [cells]
   double best_travel_ = 0.0;
-  std::string labels_from_;  ///< folder of another training; empty: of none
+  std::optional<Measured> measured_;  ///< taken over at the beginning
   std::shared_ptr<const PolicyNetwork> best_;
   std::vector<LabelledState> labels_;  ///< of the kept rounds
   std::vector<LabelledState> gauge_;   ///< of the present round on maps for validation
