@@ -198,7 +198,7 @@ Matrix6d Localizer::CovarianceOfComparison(const NdtResult& aligned) const {
 void Localizer::Weigh(const Pose& T_map_imu, const Matrix6d& covariance) {
   const TrackingConfig& tracking = config_.tracking;
   update_.innovation = filter_.Distance(T_map_imu, covariance);
-  const bool fits = update_.score.fit >= tracking.min_fit &&
+  const bool fits = update_.score.agreement() >= tracking.min_agreement &&
                     update_.score.seen_through <= tracking.max_seen_through;
   const bool expected = update_.innovation < tracking.gate_sigmas * tracking.gate_sigmas;
   if (fits && expected) {

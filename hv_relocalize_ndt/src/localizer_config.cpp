@@ -5,8 +5,9 @@ namespace hv::relocalize {
 void TrackingConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("period_s", period_s, "between comparisons of a scan with the map [s]");
   visitor.Field("search_period_s", search_period_s, "between searches while lost [s]");
-  visitor.Field("drift_translation", drift_translation,
-                "error of odometry's position, share of the distance");
+  visitor.Field(
+      "drift_translation", drift_translation,
+      "error of odometry's position, share of the distance from one correction to the next");
   visitor.Field("drift_rotation_deg", drift_rotation_deg, "error of its heading [deg/m]");
   visitor.Field("drift_tilt_deg", drift_tilt_deg, "error of its vertical [deg/m]");
   visitor.Field("waiting_m", waiting_m, "error of its position in a second [m]");
@@ -17,7 +18,7 @@ void TrackingConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("min_sigma_deg", min_sigma_deg, "and of the rotation [deg]");
   visitor.Field("min_overlap", min_overlap,
                 "share of the scan that must lie where the map knows anything, 0 to 1");
-  visitor.Field("min_fit", min_fit, "share of the scan that must fit, 0 to 1");
+  visitor.Field("min_agreement", min_agreement, "share of what it knows that must fit, 0 to 1");
   visitor.Field("max_seen_through", max_seen_through,
                 "share of the map in view that the scan may pass through, 0 to 1");
   visitor.Field("gate_sigmas", gate_sigmas,
@@ -49,7 +50,7 @@ void TrackingConfig::Validate(ConfigProblems& problems) const {
   positive(max_sigma_m, "max_sigma_m");
   positive(silence_s, "silence_s");
   share(min_overlap, "min_overlap");
-  share(min_fit, "min_fit");
+  share(min_agreement, "min_agreement");
   share(max_seen_through, "max_seen_through");
   problems.Require(misses >= 1, "tracking.misses", "must be at least 1");
 }

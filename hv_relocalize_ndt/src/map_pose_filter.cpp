@@ -20,6 +20,7 @@ void MapPoseFilter::Start(const Pose& T_odom_imu, const Pose& T_map_imu,
   T_odom_imu_ = T_odom_imu;
   T_map_imu_ = T_map_imu;
   covariance_ = Symmetric(covariance);
+  alone_m_ = 0.0;
 }
 
 void MapPoseFilter::Predict(const Pose& T_odom_imu, double seconds) {
@@ -28,16 +29,19 @@ void MapPoseFilter::Predict(const Pose& T_odom_imu, double seconds) {
   T_map_imu_ = T_map_imu_ * step;
   const Matrix6d transport = se3::Adjoint(step.inverse());
   covariance_ = Symmetric(transport * covariance_ * transport.transpose());
-  const double travelled = step.translation().norm();
-  const double position = config_.drift_translation * travelled;
-  const double heading = config_.drift_rotation_deg * kRadians * travelled;
-  const double tilt = config_.drift_tilt_deg * kRadians * travelled;
+  const double before_m = alone_m_;
+  alone_m_ += step.translation().norm();
+  const double grown = alone_m_ * alone_m_ - before_m * before_m;
+  const double heading = config_.drift_rotation_deg * kRadians;
+  const double tilt = config_.drift_tilt_deg * kRadians;
+  const double position = config_.drift_translation * config_.drift_translation * grown;
   const double waiting = config_.waiting_m * config_.waiting_m * std::abs(seconds);
-  covariance_.topLeftCorner<3, 3>().diagonal().array() += position * position + waiting;
+  covariance_.topLeftCorner<3, 3>().diagonal().array() += position + waiting;
   const Eigen::Vector3d up = T_map_imu_.linear().row(2);
   const Eigen::Matrix3d about_up = up * up.transpose();
   covariance_.bottomRightCorner<3, 3>() +=
-      heading * heading * about_up + tilt * tilt * (Eigen::Matrix3d::Identity() - about_up);
+      grown *
+      (heading * heading * about_up + tilt * tilt * (Eigen::Matrix3d::Identity() - about_up));
 }
 
 double MapPoseFilter::Distance(const Pose& T_map_imu, const Matrix6d& covariance) const {
@@ -50,6 +54,7 @@ void MapPoseFilter::Correct(const Pose& T_map_imu, const Matrix6d& covariance) {
   const Matrix6d gain = (covariance_ + covariance).ldlt().solve(covariance_).transpose();
   T_map_imu_ = T_map_imu_ * se3::Exp(gain * innovation);
   covariance_ = Symmetric((Matrix6d::Identity() - gain) * covariance_);
+  alone_m_ = 0.0;
   CorrectTilt();
 }
 

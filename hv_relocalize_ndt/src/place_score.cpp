@@ -30,6 +30,8 @@ void PlaceScoreConfig::Validate(ConfigProblems& problems) const {
 
 double PlaceScore::score() const { return fit * std::exp(-seen_through / kSeenThroughScale); }
 
+double PlaceScore::agreement() const { return overlap > 0.0 ? fit / overlap : 0.0; }
+
 PlaceJudge::PlaceJudge(const PlaceScoreConfig& config, const NdtLevel& map_surfaces,
                        const NdtLevel& scan_surfaces, const std::vector<Eigen::Vector3f>& scan,
                        const Eigen::Vector3d& up)

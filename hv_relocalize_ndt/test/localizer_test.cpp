@@ -1,5 +1,6 @@
 #include "hv_relocalize_ndt/localizer.h"
 
+#include <algorithm>
 #include <memory>
 #include <random>
 #include <utility>
@@ -194,16 +195,39 @@ TEST_F(LocalizerTest, AnotherHallIsNeverAPlaceInThisOne) {
   }
 }
 
-TEST_F(LocalizerTest, OutsideOfTheMapOdometryGoesOnForAWhile) {
+/// Of the hall what lies beyond `from_x` [m].
+PriorMap PartOfTheHall(float from_x) {
   std::mt19937 random(9);
-  std::vector<Eigen::Vector3f> half;
+  std::vector<Eigen::Vector3f> part;
   for (const Eigen::Vector3f& point : CloudOf(loop::Hall(kHall), random)) {
-    if (point.x() > 0.5F) half.push_back(point);
+    if (point.x() > from_x) part.push_back(point);
   }
-  const PriorMap map("half of the hall", half, RelocalizeConfig());
+  return PriorMap("part of the hall", part, RelocalizeConfig());
+}
+
+TEST_F(LocalizerTest, WhatTheMapDoesNotKnowContradictsNothing) {
+  const PriorMap map = PartOfTheHall(-1.0F);
+  LocalizerConfig config;
+  config.tracking.drift_translation = 0.02;  // of this odometry
+  config.tracking.drift_rotation_deg = 0.3;
+  Localizer localizer(config, map);
+  localizer.SetGuess({drive_.T_map_imu(), 1.0, 0.2});
+  constexpr int kOnceAround = 104;
+  double least_fit = 1.0;
+  for (int i = 0; i < kOnceAround; ++i) {
+    const LocalizerUpdate update = localizer.Add(drive_.Next());
+    ASSERT_NE(update.state, LocalizerState::kLost) << update.reason;
+    if (update.registered) least_fit = std::min(least_fit, update.score.fit);
+    if (i + 1 == kOnceAround) ExpectAt(update, drive_.T_map_imu());
+  }
+  EXPECT_LT(least_fit, config.tracking.min_agreement);
+}
+
+TEST_F(LocalizerTest, OutsideOfTheMapOdometryGoesOnForAWhile) {
+  const PriorMap map = PartOfTheHall(0.5F);
   LocalizerConfig config;
   config.tracking.min_overlap = 0.75;
-  config.tracking.min_fit = 0.3;
+  config.tracking.min_agreement = 0.3;
   config.relocalize.accept.min_overlap = 0.3;
   config.relocalize.accept.min_fit = 0.3;
   config.tracking.drift_translation = 0.2;

@@ -56,9 +56,29 @@ TEST(MapPoseFilterTest, ErrorsAreCarriedAlong) {
   Pose ahead = Pose::Identity();
   ahead.translation().x() = 10.0;
   filter.Predict(ahead, 0.0);
-  const double drifted = 0.02 * 10.0;  // of TrackingConfig::drift_translation
+  const double drifted = TrackingConfig().drift_translation * 10.0;
   EXPECT_NEAR(filter.covariance()(1, 1), 100.0 * heading * heading + drifted * drifted, 1e-6);
   EXPECT_NEAR(filter.covariance()(0, 0), drifted * drifted, 1e-6);
+}
+
+TEST(MapPoseFilterTest, DriftGrowsWithTheDistanceInStepsOfAnyLength) {
+  TrackingConfig config;
+  config.drift_rotation_deg = config.drift_tilt_deg = 1e-6;  // it would be one of position, too
+  for (const int steps : {1, 7, 200}) {
+    MapPoseFilter filter(config);
+    filter.Start(Pose::Identity(), Pose::Identity(), Diagonal(1e-6, 1e-9));
+    Pose ahead = Pose::Identity();
+    for (int i = 1; i <= steps; ++i) {
+      ahead.translation().x() = 20.0 * i / steps;
+      filter.Predict(ahead, 0.0);
+    }
+    EXPECT_NEAR(filter.sigma_m(), std::sqrt(3.0) * config.drift_translation * 20.0, 1e-4) << steps;
+    filter.Correct(ahead, Diagonal(0.01, 0.001));
+    const double corrected_m = filter.sigma_m();
+    ahead.translation().x() += 0.1;
+    filter.Predict(ahead, 0.0);
+    EXPECT_LT(filter.sigma_m(), corrected_m + 0.001) << steps;
+  }
 }
 
 TEST(MapPoseFilterTest, AnExactMeasurementIsTaken) {

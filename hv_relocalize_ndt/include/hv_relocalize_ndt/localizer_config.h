@@ -13,14 +13,14 @@ struct TrackingConfig {
   double period_s = 0.5;
   double search_period_s = 1.0;
   double drift_translation = 0.02;
-  double drift_rotation_deg = 0.1;
+  double drift_rotation_deg = 0.06;
   double drift_tilt_deg = 0.01;
   double waiting_m = 0.01;
   double tilt_sigma_deg = 0.3;
   double min_sigma_m = 0.01;
   double min_sigma_deg = 0.05;
   double min_overlap = 0.5;
-  double min_fit = 0.55;
+  double min_agreement = 0.55;
   double max_seen_through = 0.1;
   double gate_sigmas = 5.0;
   int misses = 3;

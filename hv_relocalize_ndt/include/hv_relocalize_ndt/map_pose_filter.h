@@ -15,7 +15,9 @@ class MapPoseFilter {
   /// Starts anew at a known place.
   void Start(const Pose& T_odom_imu, const Pose& T_map_imu, const Matrix6d& covariance);
 
-  /// Follows odometry to its newest pose, `seconds` after the last.
+  /// Follows odometry to its newest pose, `seconds` after the last. Between two corrections its
+  /// errors add up, as those of a wrong scale do: they grow with the distance, however many steps
+  /// that is made of.
   void Predict(const Pose& T_odom_imu, double seconds);
 
   /// Squared Mahalanobis distance of a measured pose from the predicted one: six degrees of
@@ -38,6 +40,7 @@ class MapPoseFilter {
   Pose T_odom_imu_ = Pose::Identity();
   Pose T_map_imu_ = Pose::Identity();
   Matrix6d covariance_ = Matrix6d::Identity();
+  double alone_m_ = 0.0;  ///< driven since the last correction
 };
 
 }  // namespace hv::relocalize

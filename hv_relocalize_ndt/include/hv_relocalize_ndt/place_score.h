@@ -26,7 +26,8 @@ struct PlaceScore {
   double fit = 0.0;
   double overlap = 0.0;       ///< share of them with anything of the map around
   double seen_through = 0.0;  ///< share of the map's surfaces in view that the scan passes through
-  double score() const;       ///< both in one number, 0 to 1
+  double score() const;       ///< fit and seen_through in one number, 0 to 1
+  double agreement() const;   ///< fit of what the map knows, 0 to 1; 0 where it knows nothing
 };
 
 /// Judges poses of one scan in a map. Keeps references. Const methods are thread-safe.
