@@ -17,7 +17,7 @@ packages=(
   python3-roslaunch python3-rosmsg python3-rosnode python3-rosservice python3-rostest
   python3-rostopic python3-sensor-msgs python3-std-srvs python3-tf2-msgs python3-visualization-msgs python3-yaml
   ros-actionlib-msgs ros-geometry-msgs ros-message-generation ros-message-runtime ros-move-base-msgs ros-nav-msgs ros-sensor-msgs
-  robin-map-dev ros-std-msgs rosbash)
+  robin-map-dev ros-robot-state-publisher ros-std-msgs rosbash)
 
 fail() {
   echo "setup: $*" >&2

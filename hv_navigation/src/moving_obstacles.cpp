@@ -74,7 +74,9 @@ const std::vector<Walker>& MovingObstacles::Track(Time stamp, const OccupancyGri
   std::vector<Sighting> sightings = NewlyTaken(stamp, seen, robot);
   for (Sighting& sighting : sightings) {
     Recognise(sighting);
-    if (const std::optional<Walker> walker = Follow(sighting)) noticed.push_back(*walker);
+    std::optional<Walker> walker = Follow(sighting);
+    if (!walker) walker = SlowedDown(sighting);
+    if (walker) noticed.push_back(*walker);
   }
   Forget(stamp, robot, noticed);
   walkers_.insert(walkers_.end(), noticed.begin(), noticed.end());
@@ -159,6 +161,19 @@ std::optional<Walker> MovingObstacles::Follow(const Sighting& sighting) const {
     walker = Walker{sighting.stamp, sighting.place, velocity / speed_mps};
   }
   return walker;
+}
+
+/// Whether it is somebody noticed before who gets on less than a walk: a person about to stop.
+std::optional<Walker> MovingObstacles::SlowedDown(const Sighting& sighting) const {
+  if (!sighting.stays) return {};
+  WalkConfig slowed = config_.walk;
+  slowed.least_mps = 0.0;
+  for (const Walker& walker : walkers_) {
+    if (Walkers::MayBeNear(slowed, walker, sighting.place, slowed.radius_m, sighting.stamp)) {
+      return Walker{sighting.stamp, sighting.place, walker.direction};
+    }
+  }
+  return {};
 }
 
 /// Times at which something was sighted where it would have been.

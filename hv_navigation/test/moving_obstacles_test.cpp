@@ -105,6 +105,20 @@ TEST_F(MovingObstaclesTest, WhoIsNotNoticedForAMomentIsStillMinded) {
   EXPECT_LE(minded_s(-0.9, 0.0), config_.hold_near_s + noticed_s);
 }
 
+TEST_F(MovingObstaclesTest, WhoSlowsDownIsSeenAllTheSame) {
+  ASSERT_FALSE(Walk({-1.2, 0.0}, {1.0, 0.0}).empty());
+  Vector2d place = Vector2d::Zero();
+  for (int i = 0; i < 8; ++i) {
+    place.x() += 0.4 * kPeriod_s;
+    OccupancyGrid grid = FreeGrid();
+    AddDisc(grid, place, 0.25);
+    const std::vector<Walker> walkers = Show(grid);
+    ASSERT_FALSE(walkers.empty()) << i;
+    EXPECT_EQ(walkers.back().stamp, Time::FromSeconds(time_s_)) << i;
+    EXPECT_LT((walkers.back().place - place).norm(), 0.3) << i;
+  }
+}
+
 TEST_F(MovingObstaclesTest, WhatAppearsMayBeSomebody) {
   for (int i = 0; i < 10; ++i) Show(FreeGrid());
   EXPECT_TRUE(moving_.appeared().empty());

@@ -76,6 +76,7 @@ class MovingObstacles {
   bool IsNew(const Eigen::Vector2d& place, Time stamp) const;
   void Recognise(Sighting& sighting);
   std::optional<Walker> Follow(const Sighting& sighting) const;
+  std::optional<Walker> SlowedDown(const Sighting& sighting) const;
   int CountInLine(const Sighting& sighting, const Eigen::Vector2d& velocity) const;
   bool SightedAgain(const Sighting& sighting) const;
   void NoteAppeared(Time now, const std::vector<Sighting>& sightings);
