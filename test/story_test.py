@@ -25,7 +25,7 @@ from recording import DEVEL, Collector, Diagnostics, wait_until  # noqa: E402
 HV_MAP = os.path.join(DEVEL, "lib", "hv_replay", "hv_map")
 WORLD = os.path.join(rospkg.RosPack().get_path("hv_bringup"), "..", "test", "small_building.yaml")
 FIRST_START = (1.2, 1.3, 0.0)  # x, y [m], yaw [deg] in the building
-SECOND_START = (8.2, 6.6, 200.0)  # in another room
+SECOND_START = (4.0, 7.4, 250.0)  # in a room
 IMU = (-0.06, 0.02)  # where the map begins, seen from the base at the first start [m]
 WAITS = 25  # of half a minute each; reached only by a failure
 
