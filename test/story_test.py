@@ -63,11 +63,9 @@ class Robot:
         return place_of(self.truth.messages[-1].pose.pose)
 
     def switch_off(self):
-        """Its exit status."""
         self._process.send_signal(signal.SIGINT)
-        status = self._process.wait(60)
+        self._process.wait(60)
         self._file.close()
-        return status
 
     def output(self):
         with open(self.log) as file:

@@ -18,7 +18,8 @@ void TrackingConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("min_sigma_deg", min_sigma_deg, "and of the rotation [deg]");
   visitor.Field("min_overlap", min_overlap,
                 "share of the scan that must lie where the map knows anything, 0 to 1");
-  visitor.Field("min_agreement", min_agreement, "share of what it knows that must fit, 0 to 1");
+  visitor.Field("min_agreement", min_agreement,
+                "share of that part of the scan that must fit, 0 to 1");
   visitor.Field("max_seen_through", max_seen_through,
                 "share of the map in view that the scan may pass through, 0 to 1");
   visitor.Field("gate_sigmas", gate_sigmas,
