@@ -46,13 +46,6 @@ ClearanceGrid ClearanceGrid::WithCells(OccupancyGrid grid, const CellBox& change
   return result;
 }
 
-/// To the nearest cell outside of the grid that is an obstacle.
-float ClearanceGrid::CellsToOutside(int column, int row) const {
-  if (unknown_ == Unknown::kFree) return std::numeric_limits<float>::max();
-  return static_cast<float>(
-      1 + std::min({column, row, grid_.width - 1 - column, grid_.height - 1 - row}));
-}
-
 /// Sets the distances inside `box`.
 void ClearanceGrid::Measure(const CellBox& box) {
   const Eigen::Array2i last(grid_.width - 1, grid_.height - 1);
@@ -69,12 +62,11 @@ void ClearanceGrid::Measure(const CellBox& box) {
   if (!all_free) cv::distanceTransform(free, distances, cv::DIST_L2, cv::DIST_MASK_PRECISE);
   const auto limit = static_cast<float>(limit_m_);
   for (int row = box.low.y(); row <= box.high.y(); ++row) {
-    const auto* from = distances.ptr<float>(row - low.y());
-    for (int column = box.low.x(); column <= box.high.x(); ++column) {
-      const float cells = std::min(from[column - low.x()], CellsToOutside(column, row));
-      clearance_m_[IndexOf(column, row)] =
-          std::min(limit, BorderDistance(cells, grid_.resolution_m));
-    }
+    const auto* from = distances.ptr<float>(row - low.y()) + (box.low.x() - low.x());
+    std::transform(
+        from, from + (box.high.x() - box.low.x() + 1),
+        clearance_m_.begin() + static_cast<std::ptrdiff_t>(IndexOf(box.low.x(), row)),
+        [&](float cells) { return std::min(limit, BorderDistance(cells, grid_.resolution_m)); });
   }
 }
 

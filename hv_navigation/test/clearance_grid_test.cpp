@@ -35,12 +35,10 @@ TEST_P(Clearance, IsTheDistanceToTheNearestObstacle) {
   for (int row = 0; row < cells.height; ++row) {
     for (int column = 0; column < cells.width; ++column) {
       double nearest = 1e9;
-      for (int y = -1; y <= cells.height; ++y) {
-        for (int x = -1; x <= cells.width; ++x) {
-          const std::int8_t cell =
-              cells.Contains({x, y}) ? cells.At(x, y) : OccupancyGrid::kUnknown;
-          const bool obstacle = cell == OccupancyGrid::kOccupied ||
-                                (cell == OccupancyGrid::kUnknown &&
+      for (int y = 0; y < cells.height; ++y) {
+        for (int x = 0; x < cells.width; ++x) {
+          const bool obstacle = cells.At(x, y) == OccupancyGrid::kOccupied ||
+                                (cells.At(x, y) == OccupancyGrid::kUnknown &&
                                  GetParam() == ClearanceGrid::Unknown::kOccupied);
           if (obstacle) nearest = std::min(nearest, std::hypot(x - column, y - row));
         }

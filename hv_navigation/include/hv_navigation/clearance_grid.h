@@ -26,7 +26,7 @@ class ClearanceGrid {
  public:
   enum class Unknown { kFree, kOccupied };
 
-  /// `unknown`: what unknown cells, and all outside of the grid, count as. Distances are exact to 2 % and never above `limit_m`.
+  /// `unknown`: what unknown cells count as. Distances are exact to 2 % and never above `limit_m`.
   ClearanceGrid(OccupancyGrid grid, Unknown unknown, double limit_m);
 
   /// The same with `cells`, which must lie inside, occupied too.
@@ -67,7 +67,6 @@ class ClearanceGrid {
   }
 
   int ReachInCells() const;
-  float CellsToOutside(int column, int row) const;
   void Measure(const CellBox& box);
 
   OccupancyGrid grid_;
