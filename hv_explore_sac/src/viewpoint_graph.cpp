@@ -17,15 +17,26 @@ std::vector<int> Samples(int low, int end, double spacing) {
   }
 }
 
+/// Of each cell, whether it belongs to the lattice.
+std::vector<char> Lattice(const ViewpointConfig& config, const Belief& belief) {
+  const Eigen::Vector2i& low = belief.low();
+  const Eigen::Vector2i end = low + Eigen::Vector2i(belief.width(), belief.height());
+  std::vector<char> lattice(static_cast<std::size_t>(belief.width() * belief.height()), 0);
+  for (const int y : Samples(low.y(), end.y(), config.spacing_y)) {
+    for (const int x : Samples(low.x(), end.x(), config.spacing_x)) {
+      lattice[static_cast<std::size_t>(belief.IndexOf({x, y}))] = 1;
+    }
+  }
+  return lattice;
+}
+
 }  // namespace
 
 ViewpointGraph::ViewpointGraph(const ViewpointConfig& config, const Belief& belief)
     : config_(config),
       low_(belief.low()),
       width_(belief.width()),
-      on_lattice_(Index(belief.width() * belief.height()), 0),
-      viewpoint_at_(on_lattice_.size(), -1) {
-  PlaceLattice(belief);
+      on_lattice_(std::make_shared<const std::vector<char>>(Lattice(config, belief))) {
   Rebuild(belief);
 }
 
@@ -37,7 +48,7 @@ void ViewpointGraph::Update(const Belief& belief) {
   }
   RecheckEdges(belief);
   for (const Belief::CellChange& change : belief.changes()) {
-    if (on_lattice_[Index(change.index)] == 0 || belief.At(change.index) != Cell::kFree) continue;
+    if (!OnLattice(change.index) || belief.At(change.index) != Cell::kFree) continue;
     Add(belief.CellOf(change.index), belief);
   }
   for (int viewpoint = 0; viewpoint < size(); ++viewpoint) ListEdges(viewpoint);
@@ -52,22 +63,14 @@ int ViewpointGraph::Add(const Eigen::Vector2i& cell, const Belief& belief) {
 }
 
 int ViewpointGraph::At(const Eigen::Vector2i& cell) const {
-  return viewpoint_at_[Index((cell.y() - low_.y()) * width_ + cell.x() - low_.x())];
-}
-
-void ViewpointGraph::PlaceLattice(const Belief& belief) {
-  const Eigen::Vector2i end = low_ + Eigen::Vector2i(belief.width(), belief.height());
-  for (const int y : Samples(low_.y(), end.y(), config_.spacing_y)) {
-    for (const int x : Samples(low_.x(), end.x(), config_.spacing_x)) {
-      on_lattice_[Index(belief.IndexOf({x, y}))] = 1;
-    }
-  }
+  const auto found = viewpoint_at_.find((cell.y() - low_.y()) * width_ + cell.x() - low_.x());
+  return found == viewpoint_at_.end() ? -1 : found->second;
 }
 
 void ViewpointGraph::Rebuild(const Belief& belief) {
   const std::vector<Eigen::Vector2i> old_cells = std::move(cells_);
   const std::vector<char> old_visited = std::move(visited_);
-  std::fill(viewpoint_at_.begin(), viewpoint_at_.end(), -1);
+  viewpoint_at_.clear();
   cells_.clear();
   visited_.clear();
   nearest_.clear();
@@ -79,9 +82,9 @@ void ViewpointGraph::Rebuild(const Belief& belief) {
     const int viewpoint = Insert(old_cells[i], belief);
     visited_[Index(viewpoint)] = old_visited[i];
   }
-  for (int cell = 0; cell < static_cast<int>(on_lattice_.size()); ++cell) {
-    if (on_lattice_[Index(cell)] == 0 || belief.At(cell) != Cell::kFree) continue;
-    if (viewpoint_at_[Index(cell)] < 0) Insert(belief.CellOf(cell), belief);
+  for (int cell = 0; cell < static_cast<int>(on_lattice_->size()); ++cell) {
+    if (!OnLattice(cell) || belief.At(cell) != Cell::kFree) continue;
+    if (At(belief.CellOf(cell)) < 0) Insert(belief.CellOf(cell), belief);
   }
   for (int viewpoint = 0; viewpoint < size(); ++viewpoint) ListEdges(viewpoint);
 }
@@ -89,7 +92,7 @@ void ViewpointGraph::Rebuild(const Belief& belief) {
 int ViewpointGraph::Insert(const Eigen::Vector2i& cell, const Belief& belief) {
   const int viewpoint = size();
   const int place = belief.IndexOf(cell);
-  viewpoint_at_[Index(place)] = viewpoint;
+  viewpoint_at_[place] = viewpoint;
   cells_.push_back(cell);
   visited_.push_back(0);
   nearest_.emplace_back().reserve(Index(config_.neighbors + 1));

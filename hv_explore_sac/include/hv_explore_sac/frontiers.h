@@ -28,6 +28,10 @@ class Frontiers {
   const std::vector<int>& removed() const { return removed_; }
 
   int block() const { return block_; }  ///< edge of a block [cells]
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  /// How many cells of a block are unknown.
+  int UnknownIn(int block) const { return unknown_cells_[static_cast<std::size_t>(block)]; }
 
   bool IsFrontier(int point) const { return place_[static_cast<std::size_t>(point)] >= 0; }
   Eigen::Vector2i CellOf(int point) const {

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "hv_explore_sac/viewpoint_graph.h"
@@ -15,6 +15,9 @@ class GraphSearch {
   static constexpr float kUnreached = std::numeric_limits<float>::infinity();
 
   void Run(const ViewpointGraph& graph, int start);
+  /// Ends when all targets are reached; what is farther away may then not be, or not on the
+  /// shortest way.
+  void RunTo(const ViewpointGraph& graph, int start, const std::vector<int>& targets);
 
   /// Length of the way to a viewpoint [cells], kUnreached if there is none.
   float DistanceTo(int viewpoint) const { return distance_[static_cast<std::size_t>(viewpoint)]; }
@@ -30,10 +33,13 @@ class GraphSearch {
   std::vector<int> WayTo(int viewpoint) const;
 
  private:
+  template <typename Last>
+  void Run(const ViewpointGraph& graph, int start, Last is_last);
+
   std::vector<float> distance_;
   std::vector<int> predecessor_;
   std::vector<int> order_;
-  std::vector<std::pair<float, int>> open_;
+  std::vector<std::uint64_t> open_;  ///< a heap of distances with viewpoints
 };
 
 }  // namespace hv::explore

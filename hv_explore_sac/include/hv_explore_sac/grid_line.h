@@ -24,13 +24,11 @@ void WalkLine(const Eigen::Vector2i& from, const Eigen::Vector2i& to, const Eige
   int error = dx - dy - 2 * dy * gone_x + 2 * dx * gone_y;
   for (int left = dx + dy - gone_x - gone_y; left > 0; --left) {
     if (!visit(x, y)) return;
-    if (error > 0) {
-      x += step_x;
-      error -= 2 * dy;
-    } else {
-      y += step_y;
-      error += 2 * dx;
-    }
+    // Without branches: which way it goes next is hard to foretell.
+    const bool across = error > 0;
+    x += across ? step_x : 0;
+    y += across ? 0 : step_y;
+    error += across ? -2 * dy : 2 * dx;
   }
 }
 

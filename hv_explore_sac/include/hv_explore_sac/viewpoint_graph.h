@@ -1,8 +1,10 @@
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
+#include <tsl/robin_map.h>
 #include <Eigen/Core>
 
 #include "hv_explore_sac/belief.h"
@@ -13,7 +15,8 @@ namespace hv::explore {
 /// Viewpoints in known free space and the edges between them (paper, section 3.3.1): samples of a
 /// uniform lattice through cell (0, 0), and the places that were added. Edges lead from a viewpoint
 /// to those of its nearest ones to which the straight line is known to be free. Viewpoints are
-/// named by a number that stays theirs until free space is lost. Not thread-safe.
+/// named by a number that stays theirs until free space is lost. Cheap to copy: runs are tried on
+/// copies. Not thread-safe.
 class ViewpointGraph {
  public:
   ViewpointGraph(const ViewpointConfig& config, const Belief& belief);
@@ -51,7 +54,7 @@ class ViewpointGraph {
     int blocked;  ///< a cell in the way, or Belief::kNone
   };
   static std::size_t Index(int viewpoint) { return static_cast<std::size_t>(viewpoint); }
-  void PlaceLattice(const Belief& belief);
+  bool OnLattice(int place) const { return (*on_lattice_)[Index(place)] != 0; }
   void Rebuild(const Belief& belief);
   int Insert(const Eigen::Vector2i& cell, const Belief& belief);
   void Offer(int viewpoint, Neighbor neighbor, const Belief& belief);
@@ -63,8 +66,8 @@ class ViewpointGraph {
   ViewpointConfig config_;
   Eigen::Vector2i low_;
   int width_;
-  std::vector<char> on_lattice_;   ///< of each cell
-  std::vector<int> viewpoint_at_;  ///< of each cell, or -1
+  std::shared_ptr<const std::vector<char>> on_lattice_;  ///< of each cell; copies share it
+  tsl::robin_map<int, int> viewpoint_at_;                ///< by index of the cell
   std::vector<Eigen::Vector2i> cells_;
   std::vector<char> visited_;
   std::vector<std::vector<Neighbor>> nearest_;  ///< sorted, at most config_.neighbors

@@ -24,8 +24,10 @@ void GoalTours::Plan(const Observation& observation, const ExplorationModel& mod
 void GoalTours::Measure(const Observation& observation, const ExplorationModel& model,
                         const std::vector<Goal>& goals) {
   between_.clear();
+  targets_.clear();
+  for (const Goal& goal : goals) targets_.push_back(observation.node(goal.node).viewpoint);
   for (const Goal& from : goals) {
-    search_.Run(model.graph(), observation.node(from.node).viewpoint);
+    search_.RunTo(model.graph(), observation.node(from.node).viewpoint, targets_);
     for (const Goal& to : goals) {
       // Edges are not always there both ways; by way of the robot's viewpoint all are joined.
       const float around =

@@ -17,8 +17,8 @@ constexpr float kMost = 3.0F;
 constexpr float kNear = 24.0F;
 constexpr float kWide = 56.0F;
 constexpr float kFar = 112.0F;
-/// Edge of the blocks over which it is summed up [units].
-constexpr float kSumBlock = 8.0F;
+/// Edge of the squares over which it is summed up [units].
+constexpr float kSumSquare = 8.0F;
 /// How quickly goals matter less to each other with the way between them [1/units].
 constexpr float kAroundDecay = 0.02F;
 /// Free cells of a large place [units^2].
@@ -31,9 +31,10 @@ float BorderDistance(const Belief& belief, const Eigen::Vector2f& cell) {
   return std::min(x, y);
 }
 
-/// In cells, of which blocks have a whole number.
-int BlockOfSums(const PolicyScale& scale) {
-  return std::max(1, static_cast<int>(std::lround(kSumBlock * scale.unit)));
+/// In blocks of the frontiers, of which the squares have a whole number.
+int SquareOfSums(const PolicyScale& scale, int block) {
+  const float blocks = kSumSquare * scale.unit / static_cast<float>(block);
+  return std::max(1, static_cast<int>(std::lround(blocks)));
 }
 
 void TransformVectors(int symmetry, int vectors, nn::Matrix<float>& matrix) {
@@ -55,7 +56,8 @@ void PolicyInput::Build(const Observation& observation, const ExplorationModel& 
   goals_ = &selector_.Select(observation, model);
   tours_.Plan(observation, model, *goals_);
   scale_ = PolicyScale(model.config());
-  unknown_.Count(model.belief(), BlockOfSums(scale_));
+  const Frontiers& frontiers = model.frontiers();
+  unknown_.Count(frontiers, SquareOfSums(scale_, frontiers.block()));
   ChooseNodes(observation);
   const auto count = static_cast<Eigen::Index>(nodes_.size());
   input.features.setZero(count, kFeatures);

@@ -5,20 +5,20 @@
 
 namespace hv::explore {
 
-void UnknownShare::Count(const Belief& belief, int edge) {
-  block_ = edge;
-  columns_ = (belief.width() + block_ - 1) / block_;
-  rows_ = (belief.height() + block_ - 1) / block_;
+void UnknownShare::Count(const Frontiers& frontiers, int edge) {
+  square_ = edge * frontiers.block();
+  columns_ = (frontiers.columns() + edge - 1) / edge;
+  rows_ = (frontiers.rows() + edge - 1) / edge;
   const auto stride = static_cast<std::size_t>(columns_) + 1;
   sums_.assign(stride * (static_cast<std::size_t>(rows_) + 1), 0);
-  for (int y = 0; y < belief.height(); ++y) {
-    int* const row = &sums_[stride * static_cast<std::size_t>(y / block_ + 1) + 1];
-    for (int block = 0; block < columns_; ++block) {
-      const int first = y * belief.width() + block * block_;
-      const int last = std::min(first + block_, (y + 1) * belief.width());
-      int count = 0;
-      for (int i = first; i < last; ++i) count += belief.At(i) == Cell::kUnknown ? 1 : 0;
-      row[block] += count;
+  for (int y = 0; y < frontiers.rows(); ++y) {
+    int* const row = &sums_[stride * static_cast<std::size_t>(y / edge + 1) + 1];
+    const int end = (y + 1) * frontiers.columns();
+    int block = y * frontiers.columns();
+    for (int column = 0; column < columns_; ++column) {
+      for (const int next = std::min(block + edge, end); block < next; ++block) {
+        row[column] += frontiers.UnknownIn(block);
+      }
     }
   }
   for (std::size_t i = stride; i < sums_.size(); ++i) {
@@ -29,7 +29,7 @@ void UnknownShare::Count(const Belief& belief, int edge) {
 
 float UnknownShare::Around(const Eigen::Vector2f& cell, float reach) const {
   const auto block = [this](float place, int most) {
-    return std::clamp(static_cast<int>(std::lround(place / static_cast<float>(block_))), 0, most);
+    return std::clamp(static_cast<int>(std::lround(place / static_cast<float>(square_))), 0, most);
   };
   const int left = block(cell.x() - reach, columns_);
   const int right = block(cell.x() + reach, columns_);
@@ -41,7 +41,8 @@ float UnknownShare::Around(const Eigen::Vector2f& cell, float reach) const {
 }
 
 float UnknownShare::Everywhere() const {
-  return static_cast<float>(sums_.back()) / static_cast<float>(columns_ * rows_ * block_ * block_);
+  return static_cast<float>(sums_.back()) /
+         static_cast<float>(columns_ * rows_ * square_ * square_);
 }
 
 }  // namespace hv::explore

@@ -67,8 +67,9 @@ INSTANTIATE_TEST_SUITE_P(RandomStates, PolicyInputs, testing::Range(1U, 7U));
 
 TEST(UnknownShareTest, CountsWhatIsUnknown) {
   Belief belief(64, 48);
+  Frontiers frontiers(FrontierConfig(), belief);
   UnknownShare share;
-  share.Count(belief, 8);
+  share.Count(frontiers, 2);
   EXPECT_FLOAT_EQ(share.Everywhere(), 1.0F);
   EXPECT_FLOAT_EQ(share.Around({32.0F, 24.0F}, 16.0F), 1.0F);
   EXPECT_FLOAT_EQ(share.Around({0.0F, 24.0F}, 16.0F), 0.5F);
@@ -76,7 +77,8 @@ TEST(UnknownShareTest, CountsWhatIsUnknown) {
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 32; ++x) belief.Set(belief.IndexOf({x, y}), Cell::kFree);
   }
-  share.Count(belief, 8);
+  frontiers.Update(belief);
+  share.Count(frontiers, 2);
   EXPECT_FLOAT_EQ(share.Everywhere(), 0.5F);
   EXPECT_FLOAT_EQ(share.Around({16.0F, 24.0F}, 8.0F), 0.0F);
   EXPECT_FLOAT_EQ(share.Around({32.0F, 24.0F}, 16.0F), 0.5F);

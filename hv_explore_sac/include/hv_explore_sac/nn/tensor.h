@@ -48,6 +48,12 @@ struct View {
 /// the largest sample has been seen. Not thread-safe: one arena per thread.
 template <typename Scalar>
 class Arena {
+  /// Where the next view will be taken from.
+  struct Top {
+    std::size_t block = 0;
+    std::size_t used = 0;
+  };
+
  public:
   /// Not initialised, aligned to a cache line. Valid until Reset() or the end of the Scope in
   /// which it was taken.
@@ -71,17 +77,13 @@ class Arena {
 
    private:
     Arena& arena_;
-    const typename Arena::Top top_;
+    const Top top_;
   };
 
  private:
   static constexpr std::size_t kLine = 64;
   static constexpr std::size_t kBlock = std::size_t{1} << 20U;
 
-  struct Top {
-    std::size_t block = 0;
-    std::size_t used = 0;
-  };
   struct Free {
     void operator()(Scalar* memory) const { std::free(memory); }
   };

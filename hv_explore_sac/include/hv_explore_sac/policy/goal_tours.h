@@ -40,6 +40,7 @@ class GoalTours {
   int size_ = 0;
   float decay_ = kDecay;  ///< [1/cells]
   GraphSearch search_;
+  std::vector<int> targets_;  ///< the goals' viewpoints
   std::vector<float> between_;
   std::vector<float> length_;
   std::vector<float> gain_;

@@ -4,16 +4,16 @@
 
 #include <Eigen/Core>
 
-#include "hv_explore_sac/belief.h"
+#include "hv_explore_sac/frontiers.h"
 
 namespace hv::explore {
 
-/// How much around a place is unknown, in squares of any size: sums over blocks of cells. Nothing
-/// beyond the belief is unknown. Not thread-safe.
+/// How much around a place is unknown, in squares of any size: sums over squares of the blocks in
+/// which the frontiers count what is unknown. Nothing beyond the belief is. Not thread-safe.
 class UnknownShare {
  public:
-  /// `edge`: of the blocks [cells].
-  void Count(const Belief& belief, int edge);
+  /// `edge`: of the squares [blocks of the frontiers].
+  void Count(const Frontiers& frontiers, int edge);
 
   /// Share of the square with the edge 2 x `reach` around `cell` [cells], which may lie outside.
   float Around(const Eigen::Vector2f& cell, float reach) const;
@@ -24,10 +24,10 @@ class UnknownShare {
     return sums_[static_cast<std::size_t>(row * (columns_ + 1) + column)];
   }
 
-  int block_ = 1;
+  int square_ = 1;  ///< edge [cells]
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<int> sums_;  ///< over all blocks with a smaller row and column
+  std::vector<int> sums_;  ///< over all squares with a smaller row and column
 };
 
 }  // namespace hv::explore
