@@ -1,6 +1,7 @@
 #include "hv_explore_sac/train/labels.h"
 
 #include <atomic>
+#include <cmath>
 #include <optional>
 #include <random>
 
@@ -42,13 +43,37 @@ class LabelRun {
   }
 
   void Measure() {
-    Eigen::VectorXf returns(static_cast<Eigen::Index>(builder_.goals().size()));
+    const Eigen::VectorXf preference = Preferences();
+    const float least = preference.maxCoeff() + LeastPreference();
+    const Eigen::Index contenders = (preference.array() >= least).count();
+    if (contenders < 2) return;
+    Eigen::VectorXf returns(preference.size());
+    float implied = 0.0F;  // by a preference of zero
     for (Eigen::Index i = 0; i < returns.size(); ++i) {
+      if (preference[i] < least) continue;
       const Goal& goal = builder_.goals()[static_cast<std::size_t>(i)];
       const double travel = inputs_.rollout->TravelVia(environment_, CellOf(goal.node));
       returns[i] = static_cast<float>(-travel / inputs_.labels.length_scale);
+      implied += (returns[i] - preference[i]) / static_cast<float>(contenders);
+    }
+    for (Eigen::Index i = 0; i < returns.size(); ++i) {
+      if (preference[i] < least) returns[i] = implied + preference[i];
     }
     labels_.push_back({nn::PackedGraph(input_), returns});
+  }
+
+  /// Of the goals [returns].
+  Eigen::VectorXf Preferences() const {
+    if (inputs_.network == nullptr) {
+      return Eigen::VectorXf::Zero(static_cast<Eigen::Index>(builder_.goals().size()));
+    }
+    return static_cast<float>(inputs_.temperature) *
+           inputs_.network->Choose(input_).log_probability;
+  }
+
+  /// Of a contender, below the favourite's [returns].
+  float LeastPreference() const {
+    return static_cast<float>(inputs_.temperature * std::log(inputs_.labels.contenders));
   }
 
   void Wander() {
@@ -92,8 +117,11 @@ ExplorationMap Started(const ExplorationMap& map, double elsewhere, std::uint64_
 
 void LabelConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("share", share, "of the decisions of a run whose goals are measured");
+  visitor.Field("contenders", contenders,
+                "goals less probable than this share of the policy's favourite are not tried");
   visitor.Field("wander", wander, "share of the decisions at which any goal is driven to instead");
   visitor.Field("elsewhere", elsewhere, "share of the runs that start anywhere free in their map");
+  visitor.Field("maps", maps, "of those for training, in turn and over again; 0: each once");
   visitor.Field("crossed", crossed,
                 "maps made out of two of those for training, beside these, new in each round");
   visitor.Field("length_scale", length_scale, "way that costs a return of one [cells]");
@@ -101,9 +129,12 @@ void LabelConfig::Describe(ConfigVisitor& visitor) {
 
 void LabelConfig::Validate(ConfigProblems& problems) const {
   problems.Require(share > 0.0 && share <= 1.0, "labels.share", "must be above 0 and at most 1");
+  problems.Require(contenders >= 0.0 && contenders < 1.0, "labels.contenders",
+                   "must be at least 0 and below 1");
   problems.Require(wander >= 0.0 && wander < 1.0, "labels.wander", "must be within 0 and 1");
   problems.Require(elsewhere >= 0.0 && elsewhere <= 1.0, "labels.elsewhere",
                    "must be within 0 and 1");
+  problems.Require(maps >= 0, "labels.maps", "must not be negative");
   problems.Require(crossed >= 0, "labels.crossed", "must not be negative");
   problems.Require(length_scale > 0.0, "labels.length_scale", "must be positive");
 }

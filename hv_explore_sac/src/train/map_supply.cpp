@@ -121,6 +121,13 @@ ExplorationMap CrossedMap(const std::vector<const ExplorationMap*>& maps, std::u
   return Crossing(maps, seed).Run();
 }
 
+std::vector<const ExplorationMap*> InTurn(const std::vector<const ExplorationMap*>& maps,
+                                          std::size_t taken, std::size_t count) {
+  std::vector<const ExplorationMap*> chosen(count);
+  for (std::size_t i = 0; i < count; ++i) chosen[i] = maps[(taken + i) % maps.size()];
+  return chosen;
+}
+
 void MapSupply::AddCrossed(std::vector<const ExplorationMap*> parents, std::size_t count,
                            std::uint64_t seed) {
   parents_ = std::move(parents);

@@ -10,15 +10,13 @@
 
 #include "hv_core/error.h"
 #include "hv_explore_sac/policy/policy_planner.h"
-#include "hv_explore_sac/train/policy_fit.h"
+#include "hv_explore_sac/train/policy_learner.h"
 
 namespace hv::explore {
 namespace {
 
-/// Points of the curve in a round.
-constexpr int kPoints = 10;
 /// Maps for validation on which labels are made as well.
-constexpr std::size_t kGaugeMaps = 60;
+constexpr std::size_t kGaugeMaps = 30;
 
 std::string RoundName(int round) { return std::to_string(round + 1); }
 
@@ -89,25 +87,38 @@ void Trainer::TakeLabels(const std::string& folder) {
       static_cast<int>(other.Number("ranks")) != ranks_.size()) {
     throw InputError(path + ": measured with another configuration");
   }
-  measured_ = {folder, other.Number("utility_travel"), MapsToLabel(config.labels)};
+  measured_ = {folder, other.Number("utility_travel"), MapsOfRound(config.labels).size()};
 }
 
 void Trainer::TakeOver(const Measured& measured) const {
   if (measured.utility_travel != utility_travel_) {
     throw InputError(measured.folder + ": measured on other maps");
   }
-  archive_.TakeOver(measured.folder, RoundName(0), measured.maps, MapsToLabel(config_.labels));
+  archive_.TakeOver(measured.folder, RoundName(0), measured.maps,
+                    MapsOfRound(config_.labels).size());
 }
 
-/// By this rank in a round.
-std::size_t Trainer::MapsToLabel(const LabelConfig& labels) const {
-  return ShareOf(training_, ranks_).size() +
-         static_cast<std::size_t>(labels.crossed / ranks_.size());
+/// Those that this rank explores.
+MapSupply Trainer::MapsOfRound(const LabelConfig& labels) const {
+  const std::vector<const ExplorationMap*> all = ShareOf(training_, ranks_);
+  const int given = labels.maps == 0 ? static_cast<int>(all.size()) : labels.maps / ranks_.size();
+  const auto count = [this](int first, int round) {
+    return static_cast<std::size_t>(config_.improvement.Grown(first, round));
+  };
+  std::size_t taken = 0;
+  for (int round = 0; round < round_; ++round) taken += count(given, round);
+  MapSupply maps(InTurn(all, taken, count(given, round_)));
+  maps.AddCrossed(training_, count(labels.crossed / ranks_.size(), round_), Seed(kLabels));
+  return maps;
 }
 
 void Trainer::RunRound() {
   CollectLabels();
-  Judge(Learn());
+  const PolicyLearner learner(config_, round_, Seed(kFit), ranks_, [this](double share) {
+    report_("round " + RoundName(round_) + ": learning", share);
+  });
+  last_ = learner.Learn(labels_, gauge_, curve_);
+  Judge(last_);
 }
 
 Rollout Trainer::RolloutOf(std::shared_ptr<const PolicyNetwork> network) const {
@@ -124,13 +135,12 @@ Rollout Trainer::RolloutOf(std::shared_ptr<const PolicyNetwork> network) const {
 }
 
 void Trainer::CollectLabels() {
-  MapSupply maps(ShareOf(training_, ranks_));
-  maps.AddCrossed(training_, static_cast<std::size_t>(config_.labels.crossed / ranks_.size()),
-                  Seed(kLabels));
-  Label(RoundName(round_), maps, Seed(kLabels));
+  Label(RoundName(round_), config_.labels, MapsOfRound(config_.labels), Seed(kLabels));
   std::vector<const ExplorationMap*> few = validation_;
   few.resize(std::min(few.size(), kGaugeMaps));
-  gauge_ = Label("gauge_" + RoundName(round_), MapSupply(few), Seed(kGauge));
+  LabelConfig all_tried = config_.labels;
+  all_tried.contenders = 0.0;
+  gauge_ = Label("gauge_" + RoundName(round_), all_tried, MapSupply(few), Seed(kGauge));
   labels_.clear();
   for (int round = std::max(0, round_ + 1 - config_.improvement.kept_rounds); round <= round_;
        ++round) {
@@ -139,41 +149,15 @@ void Trainer::CollectLabels() {
   }
 }
 
-std::vector<LabelledState> Trainer::Label(const std::string& name, const MapSupply& maps,
-                                          std::uint64_t seed) const {
-  const Rollout rollout = RolloutOf(best_);
-  LabelInputs inputs{config_.exploration, config_.policy, config_.labels, &sensor_, &rollout};
+std::vector<LabelledState> Trainer::Label(const std::string& name, const LabelConfig& labels,
+                                          const MapSupply& maps, std::uint64_t seed) const {
+  const Rollout rollout = RolloutOf(last_);
+  LabelInputs inputs{config_.exploration, config_.policy, labels, &sensor_, &rollout};
+  inputs.network = last_.get();
+  inputs.temperature = config_.sac.temperature;
   return archive_.Collect(name, maps, inputs, seed, [this](double share) {
     report_("round " + RoundName(round_) + ": measuring", share);
   });
-}
-
-std::shared_ptr<const PolicyNetwork> Trainer::Learn() {
-  const ImprovementConfig& improvement = config_.improvement;
-  nn::SacConfig learning = config_.sac;
-  learning.seed += round_;
-  learning.actor_optimiser.decay_steps = improvement.updates;
-  nn::Sac sac(learning, PolicyNetwork::Shape(), PolicyInput::kGlobals);
-  Reduce(ranks_, sac);
-  const int levels = learning.actor.pyramid_levels;
-  const int batch = std::max(1, improvement.batch / ranks_.size());
-  int done = 0;
-  for (int point = 1; point <= kPoints; ++point) {
-    const int count = improvement.updates * point / kPoints - done;
-    CurvePoint now;
-    now.loss = FitPolicy(labels_, count, static_cast<std::size_t>(batch), levels,
-                         Seed(kFit) + static_cast<std::uint64_t>(point), sac);
-    done += count;
-    now.round = round_ + 1;
-    now.updates = round_ * improvement.updates + done;
-    now.states = static_cast<int>(labels_.size());
-    now.gain = config_.labels.length_scale * MeanGain(gauge_, levels, sac);
-    now.travel = now.share = std::numeric_limits<double>::quiet_NaN();
-    curve_.push_back(now);
-    report_("round " + RoundName(round_) + ": learning", static_cast<double>(point) / kPoints);
-  }
-  return std::make_shared<PolicyNetwork>(PolicySettings{config_.policy, learning.actor},
-                                         sac.actor_parameters());
 }
 
 std::unique_ptr<FineTuner> Trainer::MakeFineTuner() {
@@ -196,14 +180,14 @@ void Trainer::FineTune() {
   while (cycle_ < config.cycles) {
     CurvePoint now;
     now.round = config_.improvement.rounds + 1;
-    const int next = std::min(config.cycles, cycle_ + config.judge_every);
+    const int first = cycle_;
+    const int next = std::min(config.cycles, first + config.judge_every);
     for (; cycle_ < next; ++cycle_) {
       report_("SAC", static_cast<double>(cycle_) / config.cycles);
       now.loss = tuner->Cycle(Seed(kEpisodes) + static_cast<std::uint64_t>(cycle_) * kCycleStep)
                      .critic_loss;
     }
-    now.updates =
-        config_.improvement.rounds * config_.improvement.updates + cycle_ * config.updates;
+    now.updates = curve_.back().updates + (cycle_ - first) * config.updates;
     now.states = static_cast<int>(tuner->states());
     now.gain = std::numeric_limits<double>::quiet_NaN();
     curve_.push_back(now);
@@ -228,6 +212,7 @@ void Trainer::Judge(std::shared_ptr<const PolicyNetwork> candidate) {
 void Trainer::Save() const {
   if (ranks_.rank() != 0) return;
   if (best_ != nullptr) best_->ToCheckpoint().Write(PathOf("policy.bin"));
+  if (last_ != nullptr) last_->ToCheckpoint().Write(PathOf("last.bin"));
   WriteCurve(curve_, PathOf("curve.csv"));
   nn::Checkpoint state;
   state.text = ToYaml(config_);
@@ -241,7 +226,11 @@ void Trainer::Save() const {
 
 void Trainer::Resume() {
   const nn::Checkpoint state = nn::Checkpoint::Read(PathOf("state.bin"));
-  if (state.text != ToYaml(config_)) {
+  TrainConfig config;
+  ReadConfig(ParseYaml(state.text, PathOf("state.bin")), PathOf("state.bin"), config);
+  config.improvement.rounds = config_.improvement.rounds;
+  config.fine_tune.cycles = config_.fine_tune.cycles;
+  if (ToYaml(config) != ToYaml(config_)) {
     throw InputError(PathOf("state.bin") + ": was made with another configuration");
   }
   const int ranks = static_cast<int>(state.Number("ranks"));
@@ -253,6 +242,7 @@ void Trainer::Resume() {
   utility_travel_ = state.Number("utility_travel");
   best_travel_ = state.Number("best_travel");
   if (best_travel_ < utility_travel_) best_ = PolicyNetwork::Read(PathOf("policy.bin"));
+  if (round_ > 0) last_ = PolicyNetwork::Read(PathOf("last.bin"));
   curve_ = ReadCurve(PathOf("curve.csv"));
 }
 

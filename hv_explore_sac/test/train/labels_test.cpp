@@ -1,10 +1,13 @@
 #include "hv_explore_sac/train/labels.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "hv_core/error.h"
 #include "hv_explore_sac/policy/policy_input.h"
 #include "policy/random_states.h"
+#include "policy/small_policy.h"
 
 namespace hv::explore {
 namespace {
@@ -93,6 +96,40 @@ TEST_F(Labels, HaveAReturnForEachGoalAndNoneIsFree) {
       }
     }
   }
+}
+
+TEST_F(Labels, ContendersAloneAreTried) {
+  const auto network = RandomNetwork(3, 3.0F);
+  inputs_.network = network.get();
+  inputs_.temperature = 0.7;
+  inputs_.labels.share = 1.0;
+  const std::vector<LabelledState> all = LabelMap(maps_[1], inputs_, 3);
+  inputs_.labels.contenders = 0.8;
+  const std::vector<LabelledState> contended = LabelMap(maps_[1], inputs_, 3);
+  ASSERT_FALSE(contended.empty());
+  EXPECT_LT(contended.size(), all.size());
+  std::size_t at = 0;
+  int untried = 0;
+  for (const LabelledState& label : contended) {
+    const nn::GraphInput input = label.state.Unpack();
+    while (at < all.size() && all[at].state.Unpack().features != input.features) ++at;
+    ASSERT_LT(at, all.size()) << "the same runs, so the same states";
+    const Eigen::ArrayXf preference = 0.7F * network->Choose(input).log_probability.array();
+    const Eigen::Array<bool, Eigen::Dynamic, 1> tried =
+        preference >= preference.maxCoeff() + 0.7F * std::log(0.8F);
+    EXPECT_GT(tried.count(), 1);
+    const Eigen::ArrayXf excess = label.returns.array() - preference;
+    const float implied = tried.select(excess, 0.0F).sum() / static_cast<float>(tried.count());
+    for (Eigen::Index i = 0; i < preference.size(); ++i) {
+      if (tried[i]) {
+        EXPECT_EQ(label.returns[i], all[at].returns[i]);
+      } else {
+        EXPECT_NEAR(excess[i], implied, 0.02F);  // features are kept in half precision
+        ++untried;
+      }
+    }
+  }
+  EXPECT_GT(untried, 0);
 }
 
 TEST_F(Labels, OfManyMapsAreThoseOfEachInOrder) {

@@ -89,6 +89,13 @@ TEST_F(MapSupplyTest, GivesTheMapsAndThenAsManyCrosses) {
   EXPECT_NE(supply.Map(3).free, supply.Map(4).free);
 }
 
+TEST_F(MapSupplyTest, EachMapHasItsTurn) {
+  EXPECT_EQ(InTurn(parents_, 0, 4), std::vector(parents_.begin(), parents_.begin() + 4));
+  EXPECT_EQ(InTurn(parents_, 4, 3), (std::vector{parents_[4], parents_[5], parents_[0]}));
+  EXPECT_EQ(InTurn(parents_, 12, 4), InTurn(parents_, 0, 4));
+  EXPECT_EQ(InTurn({parents_[1]}, 5, 2), (std::vector{parents_[1], parents_[1]}));
+}
+
 TEST_F(MapSupplyTest, MapsThatDoNotGoTogetherAreSaid) {
   ExplorationMap other = ParseTiles(RandomTiles(9, 30, 18), "test")[0];
   EXPECT_THROW(CrossedMap({&maps_[0], &other}, 1), InputError);

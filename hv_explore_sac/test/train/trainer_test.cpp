@@ -55,6 +55,10 @@ void ExpectSame(double a, double b) {
 }
 
 TEST_F(TrainerTest, AnInterruptedTrainingComesOutTheSame) {
+  config_.labels.maps = 2;
+  config_.labels.crossed = 1;
+  config_.improvement.networks = 2;
+  config_.improvement.imitations = 10;
   const auto quiet = [](const std::string&, double) {};
   Trainer whole = Make(Folder("whole"), quiet);
   whole.Run();
@@ -91,6 +95,22 @@ TEST_F(TrainerTest, GoesOnWithTheSameConfigurationOnly) {
   Make(folder, quiet).Run();
   config_.labels.wander = 0.5;
   EXPECT_THROW(Make(folder, quiet).Resume(), InputError);
+}
+
+TEST_F(TrainerTest, GoesOnForMoreRounds) {
+  const auto quiet = [](const std::string&, double) {};
+  Trainer whole = Make(Folder("long"), quiet);
+  whole.Run();
+  config_.improvement.rounds = 1;
+  const std::string folder = Folder("longer");
+  Make(folder, quiet).Run();
+  config_.improvement.rounds = 2;
+  Trainer longer = Make(folder, quiet);
+  longer.Resume();
+  longer.Run();
+  ASSERT_EQ(longer.curve().size(), whole.curve().size());
+  ExpectSame(longer.curve().back().travel, whole.curve().back().travel);
+  ExpectSame(longer.curve().back().loss, whole.curve().back().loss);
 }
 
 TEST_F(TrainerTest, LearnsNothingFromAnEarlierTraining) {

@@ -14,6 +14,11 @@ namespace hv::explore {
 /// the seed alone. Throws InputError when no two maps go together.
 ExplorationMap CrossedMap(const std::vector<const ExplorationMap*>& maps, std::uint64_t seed);
 
+/// The `count` maps whose turn it is when they are taken one after the other, over and over, and
+/// `taken` were taken before.
+std::vector<const ExplorationMap*> InTurn(const std::vector<const ExplorationMap*>& maps,
+                                          std::size_t taken, std::size_t count);
+
 /// Maps to learn from: those given, then crossed ones, which are made when they are asked for, so
 /// that many take no memory. Thread-safe.
 class MapSupply {

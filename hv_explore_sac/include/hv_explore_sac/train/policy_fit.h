@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "hv_explore_sac/nn/sac.h"
+#include "hv_explore_sac/policy/policy_network.h"
 #include "hv_explore_sac/train/labels.h"
 
 namespace hv::explore {
@@ -16,6 +18,12 @@ nn::Transition ToTransition(const LabelledState& label, int symmetry, int pyrami
 /// loss. Depends on the seed alone, whatever the threads.
 double FitPolicy(const std::vector<LabelledState>& labels, int count, std::size_t batch,
                  int pyramid_levels, std::uint64_t seed, nn::Sac& sac);
+
+/// `count` updates of the actor towards the mean preference (log probability) of several policies,
+/// likewise. What the noise of the labels has taught one of them alone averages out.
+double ImitateMean(const std::vector<std::shared_ptr<const PolicyNetwork>>& policies,
+                   const std::vector<LabelledState>& labels, int count, std::size_t batch,
+                   std::uint64_t seed, nn::Sac& sac);
 
 /// How much more return the actor's choices bring on average than the goals that `utility` would
 /// choose.

@@ -23,10 +23,16 @@ struct SplitConfig {
 
 /// Policy improvement by rollouts.
 struct ImprovementConfig {
-  int rounds = 3;       ///< each improves on the policy of the one before
-  int kept_rounds = 3;  ///< whose labels are learned from, the present one included
-  int updates = 3000;   ///< of the policy in a round
-  int batch = 128;      ///< states an update, over all ranks
+  int rounds = 3;         ///< each improves on the policy of the one before
+  int kept_rounds = 3;    ///< whose labels are learned from, the present one included
+  double growth = 1.0;    ///< of maps and updates from round to round
+  int networks = 1;       ///< that learn from the same labels; the policy imitates their mean
+  int updates = 3000;     ///< of each in the first round
+  int imitations = 3000;  ///< updates of the policy towards the mean in the first round
+  int batch = 128;        ///< states an update, over all ranks
+
+  /// What is `first` in the first round, in a later one; rounds count from 0.
+  int Grown(int first, int round) const;
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

@@ -17,12 +17,13 @@ namespace hv::explore {
 
 /// Policy improvement by rollouts. In each round the policy so far (first the planner `utility`)
 /// explores maps; at some of its decisions every goal is tried on the true map, with that policy
-/// taking all later decisions; a new network learns which goals turned out well, and becomes the
-/// policy when it is better on maps kept aside for that. Then discrete SAC goes on from the best
-/// policy.
+/// taking all later decisions; new networks learn which goals turned out well, and one that
+/// imitates their mean is the next policy. Maps kept aside tell which round's is the best. Then
+/// discrete SAC goes on from that.
 ///
 /// The folder holds policy.bin (the best so far, as the planner `sac` takes it), curve.csv, and
-/// what Resume() goes on from: state.bin, labels_<rank>_*.bin, sac.bin, replay_<rank>.bin.
+/// what Resume() goes on from: state.bin, last.bin (the last round's policy), labels_<rank>_*.bin,
+/// sac.bin, replay_<rank>.bin.
 /// What comes out is then the same as without the break. Not thread-safe; uses TBB's threads.
 class Trainer {
  public:
@@ -34,7 +35,7 @@ class Trainer {
           Ranks& ranks, Report report);
 
   /// Goes on from the folder's last finished round with the labels made since, or from the last
-  /// time that SAC's policy was tried.
+  /// time that SAC's policy was tried; also when more rounds or cycles are wanted now.
   /// Throws InputError when there is none.
   void Resume();
   /// Run() takes over what another training has measured in its first round, which depends on no
@@ -60,13 +61,12 @@ class Trainer {
 
   void Begin();
   void TakeOver(const Measured& measured) const;
-  std::size_t MapsToLabel(const LabelConfig& labels) const;
+  MapSupply MapsOfRound(const LabelConfig& labels) const;
   void RunRound();
   Rollout RolloutOf(std::shared_ptr<const PolicyNetwork> network) const;
   void CollectLabels();
-  std::vector<LabelledState> Label(const std::string& name, const MapSupply& maps,
-                                   std::uint64_t seed) const;
-  std::shared_ptr<const PolicyNetwork> Learn();
+  std::vector<LabelledState> Label(const std::string& name, const LabelConfig& labels,
+                                   const MapSupply& maps, std::uint64_t seed) const;
   void FineTune();
   std::unique_ptr<FineTuner> MakeFineTuner();
   void Judge(std::shared_ptr<const PolicyNetwork> candidate);
@@ -87,7 +87,8 @@ class Trainer {
   int cycle_ = 0;                ///< of SAC
   double utility_travel_ = 0.0;  ///< on the maps for validation [cells]
   double best_travel_ = 0.0;
-  std::optional<Measured> measured_;  ///< taken over at the beginning
+  std::optional<Measured> measured_;           ///< taken over at the beginning
+  std::shared_ptr<const PolicyNetwork> last_;  ///< of the last round, null before the first
   std::shared_ptr<const PolicyNetwork> best_;
   std::vector<LabelledState> labels_;  ///< of the kept rounds
   std::vector<LabelledState> gauge_;   ///< of the present round on maps for validation
