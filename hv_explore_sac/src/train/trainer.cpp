@@ -1,7 +1,6 @@
 #include "hv_explore_sac/train/trainer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <utility>
@@ -146,6 +145,10 @@ void Trainer::CollectLabels() {
        ++round) {
     std::vector<LabelledState> more = archive_.Read(RoundName(round));
     std::move(more.begin(), more.end(), std::back_inserter(labels_));
+  }
+  if (labels_.empty()) {
+    throw InputError("round " + RoundName(round_) +
+                     ": `labels` and the maps give no decision with a choice to learn from");
   }
 }
 

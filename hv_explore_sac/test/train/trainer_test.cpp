@@ -168,6 +168,12 @@ TEST_F(TrainerTest, TakesOverNothingMeasuredOtherwise) {
   EXPECT_THROW(Make(Folder("nothing"), quiet).TakeLabels(Folder("nowhere")), InputError);
 }
 
+TEST_F(TrainerTest, NeedsChoicesToLearnFrom) {
+  config_.labels.share = 1e-12;
+  Trainer trainer = Make(Folder("choices"), [](const std::string&, double) {});
+  EXPECT_THROW(trainer.Run(), InputError);
+}
+
 TEST_F(TrainerTest, NeedsMapsToLearnFrom) {
   config_.split.held_out = 4;
   EXPECT_THROW(Make(Folder("none"), [](const std::string&, double) {}), InputError);
