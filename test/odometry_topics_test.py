@@ -150,6 +150,8 @@ class OdometryTopics(unittest.TestCase):
                           ("input", "imu rate [Hz]"), ("input", "point time"),
                           ("resources", "memory [MB]"), ("resources", "scan time max [ms]")):
             self.assertTrue(self.diagnostics.value(name, key), key)
+        self.assertGreater(
+            float(self.diagnostics.value("resources", "scan to pose median [ms]")), 0.0)
         self.assertEqual(self.diagnostics.count("scans dropped"), 0)
         self.assertAlmostEqual(float(self.diagnostics.value("input", "points rate [Hz]")), 10.0,
                                delta=0.5)

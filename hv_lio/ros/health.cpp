@@ -1,9 +1,9 @@
 #include "health.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
 #include "hv_core/memory.h"
 
@@ -13,7 +13,6 @@ namespace {
 using diagnostic_msgs::DiagnosticStatus;
 
 constexpr double kRateWindow = 2.0;  // [s]
-constexpr std::size_t kTimedScans = 100;
 
 std::string ToText(const Eigen::Vector3d& v) {
   char text[96];
@@ -64,9 +63,14 @@ void Health::OnScan(const ScanResult& result) {
   any_scan_ = true;
   last_ = result;
   last_.deskewed.reset();
-  scan_ms_.push_back(result.timing.total_ms());
-  if (scan_ms_.size() > kTimedScans) scan_ms_.pop_front();
-  largest_scan_ms_ = std::max(largest_scan_ms_, result.timing.total_ms());
+  scans_.Add(result.timing.total_ms());
+}
+
+void Health::OnPublished(const ScanResult& result) {
+  const std::chrono::duration<double, std::milli> latency =
+      std::chrono::steady_clock::now() - result.arrival;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  latencies_.Add(latency.count());
 }
 
 void Health::OnCounters(const EngineCounters& engine, const InputQueue::Counters& queue) {
@@ -157,8 +161,7 @@ void Health::DescribeInput(Status& status) {
 
 void Health::DescribeResources(Status& status) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const double sum = std::accumulate(scan_ms_.begin(), scan_ms_.end(), 0.0);
-  const double mean = scan_ms_.empty() ? 0.0 : sum / static_cast<double>(scan_ms_.size());
+  const double mean = scans_.Mean_ms();
   const double period_ms = cloud_rate_.hz() > 0.0 ? 1e3 / cloud_rate_.hz() : 0.0;
   if (period_ms > 0.0 && mean > period_ms) {
     status.summaryf(DiagnosticStatus::WARN, "too slow: %.1f ms a scan, a scan each %.1f ms", mean,
@@ -167,9 +170,11 @@ void Health::DescribeResources(Status& status) {
     status.summaryf(DiagnosticStatus::OK, "%.1f ms a scan", mean);
   }
   status.addf("scan time mean [ms]", "%.2f", mean);
-  status.addf("scan time max [ms]", "%.2f",
-              scan_ms_.empty() ? 0.0 : *std::max_element(scan_ms_.begin(), scan_ms_.end()));
-  status.addf("scan time max since start [ms]", "%.2f", largest_scan_ms_);
+  status.addf("scan time max [ms]", "%.2f", scans_.Quantile_ms(1.0));
+  status.addf("scan time max since start [ms]", "%.2f", scans_.longest_ms());
+  status.addf("scan to pose median [ms]", "%.2f", latencies_.Quantile_ms(0.5));
+  status.addf("scan to pose 99th percentile [ms]", "%.2f", latencies_.Quantile_ms(0.99));
+  status.addf("scan to pose max since start [ms]", "%.2f", latencies_.longest_ms());
   status.add("voxels", last_.voxels);
   status.addf("memory [MB]", "%.1f", ResidentMegabytes());
 }

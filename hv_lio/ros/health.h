@@ -7,6 +7,7 @@
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
 
+#include "hv_core/recent_durations.h"
 #include "hv_core/time.h"
 #include "hv_lio/odometry_result.h"
 #include "input_queue.h"
@@ -32,6 +33,8 @@ class Health {
   void OnImu(Time stamp);
   void OnCloud(Time stamp);
   void OnScan(const ScanResult& result);
+  /// Its pose has just been sent.
+  void OnPublished(const ScanResult& result);
   void OnCounters(const EngineCounters& engine, const InputQueue::Counters& queue);
 
   /// One line that overrides the state while not empty (silent topic, waiting for tf, paused).
@@ -41,10 +44,13 @@ class Health {
   void DescribeOdometry(Status& status);
   /// Rates, point-time layout, counters of every fault.
   void DescribeInput(Status& status);
-  /// Time a scan, voxels, resident memory, queue.
+  /// Time a scan, from its arrival to its pose, voxels, resident memory.
   void DescribeResources(Status& status);
 
  private:
+  static constexpr std::size_t kTimedScans = 100;    // 10 s at 10 Hz
+  static constexpr std::size_t kTimedPoses = 10000;  // 1000 s
+
   void Summarize(Status& status) const;
   std::size_t Faults() const;
 
@@ -53,9 +59,9 @@ class Health {
   RateMeter cloud_rate_;
   std::string problem_;
   bool any_scan_ = false;
-  ScanResult last_;             // without its points
-  std::deque<double> scan_ms_;  // of the last scans
-  double largest_scan_ms_ = 0.0;
+  ScanResult last_;  // without its points
+  RecentDurations scans_{kTimedScans};
+  RecentDurations latencies_{kTimedPoses};
   EngineCounters engine_;
   InputQueue::Counters queue_;
   std::size_t reported_faults_ = 0;

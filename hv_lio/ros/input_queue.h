@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -21,6 +22,7 @@ class InputQueue {
   struct Input {
     sensor_msgs::PointCloud2ConstPtr cloud;
     ImuSample imu;
+    std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now();
   };
 
   struct Counters {

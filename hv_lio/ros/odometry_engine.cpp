@@ -13,16 +13,16 @@ OdometryEngine::OdometryEngine(const SystemConfig& config)
 std::vector<ScanResult> OdometryEngine::Process(const InputQueue::Input& input) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (input.cloud) {
-    Add(*input.cloud);
+    AddCloud(input);
   } else {
     pipeline_.AddImu(input.imu);
   }
   return Drain();
 }
 
-void OdometryEngine::Add(const sensor_msgs::PointCloud2& cloud) {
+void OdometryEngine::AddCloud(const InputQueue::Input& input) {
   const auto start = std::chrono::steady_clock::now();
-  DecodedScan decoded = decoder_.Decode(ViewOf(cloud));
+  DecodedScan decoded = decoder_.Decode(ViewOf(*input.cloud));
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   decode_counters_.points_not_finite += decoded.not_finite;
   decode_counters_.points_bad_time += decoded.bad_time;
@@ -30,7 +30,7 @@ void OdometryEngine::Add(const sensor_msgs::PointCloud2& cloud) {
     ++decode_counters_.clouds_unusable;
     last_decode_error_ = decoded.error;
   }
-  pipeline_.AddScan(std::move(decoded.scan), spent.count());
+  pipeline_.AddScan(std::move(decoded.scan), spent.count(), input.arrival);
 }
 
 std::vector<ScanResult> OdometryEngine::Drain() {

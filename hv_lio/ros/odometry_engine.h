@@ -27,7 +27,6 @@ struct EngineCounters {
   DecodeCounters decode;
   std::string time_layout;  ///< what was recognised about point times, empty before
   std::string last_decode_error;
-  /// Times that the map was forgotten: no odometry edge across.
 };
 
 /// Decoder and pipeline behind one lock. Results are returned, never published under the lock.
@@ -51,7 +50,7 @@ class OdometryEngine {
   std::vector<VoxelView> ViewVoxels(std::size_t max) const;
 
  private:
-  void Add(const sensor_msgs::PointCloud2& cloud);
+  void AddCloud(const InputQueue::Input& input);
   std::vector<ScanResult> Drain();
 
   mutable std::mutex mutex_;  // guards everything below

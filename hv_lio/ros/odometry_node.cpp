@@ -198,6 +198,7 @@ void OdometryNode::Deliver(const ScanResult& result) {
   }
   if (!ros::ok()) return;
   publisher_.PublishScan(result);
+  health_.OnPublished(result);
   if (publisher_.WantsVoxels(result.estimate.stamp)) {
     const auto max = static_cast<std::size_t>(parameters_.config.output.voxels_max);
     publisher_.PublishVoxels(engine_->ViewVoxels(max), result.estimate.stamp);

@@ -66,14 +66,14 @@ void Pipeline::AddImu(const ImuSample& sample) {
   }
 }
 
-void Pipeline::AddScan(Scan scan, double decode_ms) {
+void Pipeline::AddScan(Scan scan, double decode_ms, std::chrono::steady_clock::time_point arrival) {
   ++counters_.scans;
   scan.stamp = scan.stamp + config_.lidar_time_offset_s;
   const auto later = [](Time stamp, const WaitingScan& waiting) {
     return stamp < waiting.scan.stamp;
   };
   const auto place = std::upper_bound(scans_.begin(), scans_.end(), scan.stamp, later);
-  scans_.insert(place, {std::move(scan), decode_ms});
+  scans_.insert(place, {std::move(scan), decode_ms, arrival});
 }
 
 bool Pipeline::CoveredByImu(const Scan& scan) const {
@@ -106,6 +106,7 @@ ScanResult Pipeline::ProcessOldest() {
   }
   result.segment = static_cast<std::uint32_t>(counters_.segments());
   result.timing.preprocess_ms += waiting.decode_ms;
+  result.arrival = waiting.arrival;
   if (result.status == ScanStatus::kDropped) ++counters_.scans_dropped;
   if (result.status == ScanStatus::kImuOnly) ++counters_.scans_imu_only;
   if (result.status == ScanStatus::kTracking) ++counters_.scans_tracked;

@@ -47,6 +47,11 @@ ControlState ControlLoop::state() const {
   return state_;
 }
 
+RecentDurations ControlLoop::latencies() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return latencies_;
+}
+
 /// On simulated time as well, in which only looking again tells that it has come.
 bool ControlLoop::WaitUntil(ros::Time due) {
   constexpr double kLeast_s = 0.001;
@@ -91,6 +96,7 @@ void ControlLoop::Cycle(ros::Time now) {
   const NavigationOutput output = navigator_->Update(input);
   if (const auto velocity = gate_.Next(pursuing && !output.result, output.velocity)) {
     publisher_.PublishVelocity(*velocity);
+    NoteLatency(input);
   }
   Act(input, output);
   Note(input, output);
@@ -162,6 +168,14 @@ void ControlLoop::Act(const NavigationInput& input, const NavigationOutput& outp
   const std::lock_guard<std::mutex> lock(mutex_);
   state_.last_result = how;
   if (*output.result == NavigationResult::kReached) ++state_.reached;
+}
+
+void ControlLoop::NoteLatency(const NavigationInput& input) {
+  if (input.obstacles_stamp == heeded_) return;
+  heeded_ = input.obstacles_stamp;
+  const Time sent = odometry_.SensorTime(FromRos(ros::Time::now()));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  latencies_.Add(1e3 * (sent - input.obstacles_stamp));
 }
 
 void ControlLoop::Note(const NavigationInput& input, const NavigationOutput& output) {

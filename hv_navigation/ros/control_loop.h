@@ -14,6 +14,7 @@
 #include "command_gate.h"
 #include "drive_publisher.h"
 #include "goal_server.h"
+#include "hv_core/recent_durations.h"
 #include "hv_navigation/navigation_config.h"
 #include "hv_navigation/navigator.h"
 #include "mapping_worker.h"
@@ -53,8 +54,13 @@ class ControlLoop {
   ~ControlLoop();
 
   ControlState state() const;
+  /// From the stamp of what the obstacle sensors saw to the first velocity that heeds it, on the
+  /// clock of ROS.
+  RecentDurations latencies() const;
 
  private:
+  static constexpr std::size_t kTimedVelocities = 10000;
+
   void Run();
   bool WaitUntil(ros::Time due);
   void Cycle(ros::Time now);
@@ -62,6 +68,7 @@ class ControlLoop {
   void TakeGoals();
   NavigationInput ReadInputs(ros::Time now);
   void Act(const NavigationInput& input, const NavigationOutput& output);
+  void NoteLatency(const NavigationInput& input);
   void Note(const NavigationInput& input, const NavigationOutput& output);
 
   const NavigationConfig config_;
@@ -70,17 +77,19 @@ class ControlLoop {
   MappingWorker& mapping_;
   GoalServer goals_;
   DrivePublisher publisher_;
-  std::unique_ptr<Navigator> navigator_;  // this and the next five: of the thread
+  std::unique_ptr<Navigator> navigator_;  // this and the next six: of the thread
   CommandGate gate_;
   DrivePose pose_;
   Pose T_map_odom_ = Pose::Identity();
   std::optional<Time> last_;
   bool other_clock_ = false;
+  Time heeded_;  // stamp of the newest obstacles that a velocity has heeded
 
   mutable std::mutex mutex_;  // guards what follows
   std::condition_variable ended_;
   bool ending_ = false;
   ControlState state_;
+  RecentDurations latencies_{kTimedVelocities};
 
   std::thread thread_;  // last: uses all of the above
 };

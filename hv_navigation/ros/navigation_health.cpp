@@ -78,6 +78,10 @@ void NavigationHealth::DescribeNavigation(Status& status) {
   status.add("cycles missed", control.missed);
   status.addf("last cycle [ms]", "%.2f", control.cycle_ms);
   status.addf("longest cycle [ms]", "%.2f", control.longest_cycle_ms);
+  const RecentDurations latencies = control_.latencies();
+  status.addf("obstacles to velocity median [ms]", "%.1f", latencies.Quantile_ms(0.5));
+  status.addf("obstacles to velocity 99th percentile [ms]", "%.1f", latencies.Quantile_ms(0.99));
+  status.addf("obstacles to velocity max since start [ms]", "%.1f", latencies.longest_ms());
   status.add("goals", control.goals);
   status.add("goals reached", control.reached);
   status.add("last result", control.last_result);

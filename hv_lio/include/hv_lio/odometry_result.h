@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -72,9 +73,10 @@ struct ScanResult {
   OdometryEstimate estimate;
   UpdateSummary update;
   ScanTiming timing;
-  std::size_t voxels = 0;  ///< root voxels in the map
+  std::size_t voxels = 0;     ///< root voxels in the map
   std::uint32_t segment = 0;  ///< grows when the map is dropped or the clock jumps
   Time scan_start;
+  std::chrono::steady_clock::time_point arrival;  ///< of the scan, on the clock of the machine
   /// Deskewed points in the IMU frame at the scan end; Point::time keeps the firing time. Shared so
   /// that publishing threads may hold on to it.
   std::shared_ptr<const std::vector<Point>> deskewed;

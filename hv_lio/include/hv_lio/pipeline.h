@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <deque>
 #include <optional>
@@ -49,8 +50,10 @@ class Pipeline {
   /// Hands in one IMU sample (acceleration in m/s^2 or g; recognised at the start). Never throws.
   void AddImu(const ImuSample& sample);
 
-  /// Hands in one scan in the LiDAR frame; `decode_ms` is added to its preprocessing time.
-  void AddScan(Scan scan, double decode_ms = 0.0);
+  /// Hands in one scan in the LiDAR frame; `decode_ms` is added to its preprocessing time,
+  /// `arrival` comes back with its result.
+  void AddScan(Scan scan, double decode_ms = 0.0,
+               std::chrono::steady_clock::time_point arrival = std::chrono::steady_clock::now());
 
   /// Processes the oldest waiting scan whose end the IMU has reached; nullopt when there is none.
   /// Call until it returns nullopt after every AddImu/AddScan.
@@ -75,6 +78,7 @@ class Pipeline {
   struct WaitingScan {
     Scan scan;
     double decode_ms = 0.0;
+    std::chrono::steady_clock::time_point arrival;
   };
 
   bool CoveredByImu(const Scan& scan) const;
