@@ -15,14 +15,11 @@
 
 #include <openssl/evp.h>
 
+#include "fail.h"
 #include "hv_core/error.h"
 
 namespace hv {
 namespace {
-
-[[noreturn]] void Fail(const std::string& path, const std::string& what, int error) {
-  throw InputError(path + ": " + what + " (" + std::strerror(error) + ")");
-}
 
 class Descriptor {
  public:
@@ -136,6 +133,11 @@ void WriteFile(const std::string& path, std::initializer_list<std::string_view> 
   const int error = errno;
   ::unlink(temporary.c_str());
   Fail(path, "cannot be written", error);
+}
+
+bool IsFolder(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored);
 }
 
 void SyncPath(const std::string& path) {

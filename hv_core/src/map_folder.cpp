@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "fail.h"
 #include "hv_core/error.h"
 #include "hv_core/file_io.h"
 #include "map_manifest.h"
@@ -11,15 +12,6 @@ namespace hv {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void Fail(const std::string& path, const std::string& what) {
-  throw InputError(path + ": " + what);
-}
-
-bool IsFolder(const std::string& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
-}
 
 std::string WithoutTrailingSlash(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();

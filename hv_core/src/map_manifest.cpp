@@ -6,19 +6,17 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "fail.h"
 #include "hv_core/config.h"
 #include "hv_core/error.h"
 #include "hv_core/file_io.h"
 #include "point_fields.h"
+#include "yaml_value.h"
 
 namespace hv {
 namespace {
 
 constexpr const char* kSumKey = "manifest_sha256: ";
-
-[[noreturn]] void Fail(const std::string& source, const std::string& what) {
-  throw InputError(source + ": " + what);
-}
 
 /// `text` as a YAML block that reads back as it is, except for characters YAML does not allow.
 std::string Block(const std::string& text) {
@@ -73,23 +71,14 @@ void Migrate(int version, YAML::Node& /*node*/, const std::string& source) {
   }
 }
 
-template <typename T>
-T Value(const YAML::Node& node, const char* key, const std::string& source) {
-  try {
-    return node[key].as<T>();
-  } catch (const YAML::Exception&) {
-    Fail(source, std::string("key '") + key + "' is missing or has the wrong type");
-  }
-}
-
 std::vector<MapFile> ReadFiles(const YAML::Node& list, const std::string& source) {
   if (!list.IsDefined() || !list.IsSequence()) Fail(source, "key 'files' is missing or no list");
   std::vector<MapFile> files;
   for (const YAML::Node& entry : list) {
     MapFile file;
-    file.name = Value<std::string>(entry, "name", source);
-    file.size = Value<std::size_t>(entry, "size", source);
-    file.sha256 = Value<std::string>(entry, "sha256", source);
+    file.name = YamlValue<std::string>(entry, "name", source);
+    file.size = YamlValue<std::size_t>(entry, "size", source);
+    file.sha256 = YamlValue<std::string>(entry, "sha256", source);
     if (!IsMapFile(file.name)) Fail(source, "lists '" + file.name + "', which is no file of a map");
     files.push_back(std::move(file));
   }
@@ -129,11 +118,11 @@ MapManifest ParseManifest(const std::string& text, const std::string& source) {
   YAML::Node node = ParseYaml(CheckSum(text, source), source);
   if (!node.IsMap()) Fail(source, "is not a mapping");
   Migrate(version, node, source);
-  manifest.frame = Value<std::string>(node, "frame", source);
-  manifest.keyframes = Value<std::size_t>(node, "keyframes", source);
-  manifest.loops = Value<std::size_t>(node, "loops", source);
-  manifest.cloud_points = Value<std::size_t>(node, "cloud_points", source);
-  manifest.configuration = Value<std::string>(node, "configuration", source);
+  manifest.frame = YamlValue<std::string>(node, "frame", source);
+  manifest.keyframes = YamlValue<std::size_t>(node, "keyframes", source);
+  manifest.loops = YamlValue<std::size_t>(node, "loops", source);
+  manifest.cloud_points = YamlValue<std::size_t>(node, "cloud_points", source);
+  manifest.configuration = YamlValue<std::string>(node, "configuration", source);
   // The block ends with the line break that separates it from the next key.
   if (!manifest.configuration.empty()) manifest.configuration.pop_back();
   manifest.files = ReadFiles(node["files"], source);

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "fail.h"
 #include "hv_core/error.h"
 #include "hv_core/file_io.h"
 #include "map_manifest.h"
@@ -22,22 +23,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void Fail(const std::string& path, const std::string& what, int error) {
-  throw InputError(path + ": " + what + " (" + std::strerror(error) + ")");
-}
-
-[[noreturn]] void Fail(const fs::filesystem_error& error, const std::string& path) {
+[[noreturn]] void FailToWrite(const fs::filesystem_error& error, const std::string& path) {
   throw InputError(path + ": cannot be written (" + error.code().message() + ")");
 }
 
 /// Exchanges two paths in one step.
 bool Exchange(const std::string& a, const std::string& b) {
   return ::syscall(SYS_renameat2, AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
-}
-
-bool IsFolder(const std::string& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
 }
 
 void RemoveTree(const std::string& path) {
@@ -52,7 +44,7 @@ std::string Resolve(const std::string& path) {
     if (!resolved.has_filename()) resolved = resolved.parent_path();
     return resolved;
   } catch (const fs::filesystem_error& error) {
-    Fail(error, path);
+    FailToWrite(error, path);
   }
 }
 
@@ -93,7 +85,7 @@ MapWriter::MapWriter(const std::string& path, MapWriterOptions options) : option
     RemoveStaleStages();
     MakeStage();
   } catch (const fs::filesystem_error& error) {
-    Fail(error, target_);
+    FailToWrite(error, target_);
   }
 }
 
@@ -208,7 +200,7 @@ void MapWriter::Commit(const std::string& configuration, const std::string& fram
     Swap();
     SyncPath(parent_);
   } catch (const fs::filesystem_error& error) {
-    Fail(error, target_);
+    FailToWrite(error, target_);
   }
   RemoveTree(stage_);
   RemoveTree(OldMapPath());

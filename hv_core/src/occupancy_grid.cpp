@@ -6,10 +6,12 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "fail.h"
 #include "hv_core/config.h"
 #include "hv_core/error.h"
 #include "hv_core/file_io.h"
 #include "point_fields.h"
+#include "yaml_value.h"
 
 namespace hv {
 namespace {
@@ -17,10 +19,6 @@ namespace {
 constexpr unsigned char kFreePixel = 254;
 constexpr unsigned char kUnknownPixel = 205;
 constexpr unsigned char kOccupiedPixel = 0;
-
-[[noreturn]] void Fail(const std::string& source, const std::string& what) {
-  throw InputError(source + ": " + what);
-}
 
 unsigned char PixelOf(std::int8_t cell) {
   if (cell == OccupancyGrid::kUnknown) return kUnknownPixel;
@@ -110,15 +108,6 @@ class PgmReader {
   const std::string source_;
 };
 
-template <typename T>
-T Value(const YAML::Node& node, const char* key, const std::string& source) {
-  try {
-    return node[key].as<T>();
-  } catch (const YAML::Exception&) {
-    Fail(source, std::string("key '") + key + "' is missing or has the wrong type");
-  }
-}
-
 YAML::Node ParseMap(const std::string& yaml, const std::string& source) {
   const YAML::Node node = ParseYaml(yaml, source);
   if (!node.IsMap()) Fail(source, "must be a mapping, as map_server reads it");
@@ -133,20 +122,20 @@ struct Thresholds {
 
 Thresholds ReadThresholds(const YAML::Node& node, const std::string& source) {
   Thresholds thresholds;
-  thresholds.negate = Value<int>(node, "negate", source) != 0;
-  thresholds.occupied = Value<double>(node, "occupied_thresh", source);
-  thresholds.free = Value<double>(node, "free_thresh", source);
+  thresholds.negate = YamlValue<int>(node, "negate", source) != 0;
+  thresholds.occupied = YamlValue<double>(node, "occupied_thresh", source);
+  thresholds.free = YamlValue<double>(node, "free_thresh", source);
   return thresholds;
 }
 
 /// Resolution and origin; no cells yet.
 OccupancyGrid ReadFrame(const YAML::Node& node, const std::string& source) {
   OccupancyGrid grid;
-  grid.resolution_m = Value<double>(node, "resolution", source);
+  grid.resolution_m = YamlValue<double>(node, "resolution", source);
   if (!(grid.resolution_m > 0.0 && grid.resolution_m < 1e6)) {
     Fail(source, "resolution must be above 0");
   }
-  const auto origin = Value<std::vector<double>>(node, "origin", source);
+  const auto origin = YamlValue<std::vector<double>>(node, "origin", source);
   if (origin.size() != 3 || !std::isfinite(origin[0]) || !std::isfinite(origin[1])) {
     Fail(source, "origin must be three numbers x, y, yaw");
   }
@@ -171,7 +160,7 @@ void WriteGrid(const std::string& folder, const std::string& name, const Occupan
 
 OccupancyGrid ReadGrid(const std::string& yaml_path) {
   const std::string yaml = ReadFile(yaml_path);
-  const auto image = Value<std::string>(ParseMap(yaml, yaml_path), "image", yaml_path);
+  const auto image = YamlValue<std::string>(ParseMap(yaml, yaml_path), "image", yaml_path);
   const std::string pgm_path = std::filesystem::path(yaml_path).parent_path() / image;
   return ParseGrid(yaml, yaml_path, ReadFile(pgm_path), pgm_path);
 }

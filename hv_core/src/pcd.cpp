@@ -6,6 +6,7 @@
 
 #include <lzf.h>
 
+#include "fail.h"
 #include "hv_core/error.h"
 #include "hv_core/file_io.h"
 #include "point_fields.h"
@@ -17,10 +18,6 @@ constexpr std::size_t kMaxFields = 256;
 constexpr std::size_t kMaxFieldCount = 100000;
 constexpr std::size_t kMaxRowBytes = std::size_t{1} << 20U;
 constexpr std::size_t kMaxPoints = std::size_t{1} << 40U;
-
-[[noreturn]] void Fail(const std::string& source, const std::string& what) {
-  throw InputError(source + ": " + what);
-}
 
 /// Header of a PCD: its lines by their keyword, and what they mean.
 struct PcdHeader {
@@ -132,7 +129,7 @@ Eigen::Vector3f ReadOrigin(const PcdHeader& header, const std::string& source) {
   return origin.cast<float>();
 }
 
-PcdHeader ReadHeader(std::string_view bytes, const std::string& source) {
+PcdHeader ReadPcdHeader(std::string_view bytes, const std::string& source) {
   PcdHeader header;
   ReadEntries(bytes, source, header);
   ReadFields(source, header);
@@ -195,7 +192,7 @@ std::string PackPoints(const std::vector<Point>& points, PointLayout layout) {
   return body;
 }
 
-std::string HeaderText(std::size_t count, const Eigen::Vector3f& origin, const char* encoding) {
+std::string PcdHeaderText(std::size_t count, const Eigen::Vector3f& origin, const char* encoding) {
   char text[400];
   std::snprintf(text, sizeof(text),
                 "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n"
@@ -225,7 +222,7 @@ std::string CompressedBody(const std::vector<Point>& points) {
 }  // namespace
 
 PointCloud ParsePcd(std::string_view bytes, const std::string& source) {
-  PcdHeader header = ReadHeader(bytes, source);
+  PcdHeader header = ReadPcdHeader(bytes, source);
   PointCloud cloud;
   cloud.sensor_origin = ReadOrigin(header, source);
   if (header.encoding == "ascii") {
@@ -250,9 +247,9 @@ void WritePcd(const std::string& path, const std::vector<Point>& points, PcdEnco
   const std::string compressed =
       encoding == PcdEncoding::kCompressed ? CompressedBody(points) : std::string();
   if (!compressed.empty()) {
-    WriteFile(path, {HeaderText(points.size(), sensor_origin, "binary_compressed"), compressed});
+    WriteFile(path, {PcdHeaderText(points.size(), sensor_origin, "binary_compressed"), compressed});
   } else {
-    WriteFile(path, {HeaderText(points.size(), sensor_origin, "binary"),
+    WriteFile(path, {PcdHeaderText(points.size(), sensor_origin, "binary"),
                      PackPoints(points, PointLayout::kRows)});
   }
 }

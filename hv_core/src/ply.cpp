@@ -2,16 +2,13 @@
 #include <cstdio>
 #include <cstring>
 
+#include "fail.h"
 #include "hv_core/error.h"
 #include "hv_core/file_io.h"
 #include "point_fields.h"
 
 namespace hv {
 namespace {
-
-[[noreturn]] void Fail(const std::string& source, const std::string& what) {
-  throw InputError(source + ": " + what);
-}
 
 struct PlyElement {
   std::string name;
@@ -69,7 +66,7 @@ void AddElement(const std::vector<std::string_view>& words, const std::string& s
   header.elements.push_back(std::move(element));
 }
 
-PlyHeader ReadHeader(std::string_view bytes, const std::string& source) {
+PlyHeader ReadPlyHeader(std::string_view bytes, const std::string& source) {
   PlyHeader header;
   LineReader lines(bytes);
   std::string_view line;
@@ -115,7 +112,7 @@ const PlyElement& SkipToVertices(PlyHeader& header, const std::string& source) {
   Fail(source, "PLY has no element 'vertex'");
 }
 
-std::string HeaderText(std::size_t count) {
+std::string PlyHeaderText(std::size_t count) {
   return "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(count) +
          "\nproperty float x\nproperty float y\nproperty float z\nproperty float intensity\n"
          "end_header\n";
@@ -124,7 +121,7 @@ std::string HeaderText(std::size_t count) {
 }  // namespace
 
 PointCloud ParsePly(std::string_view bytes, const std::string& source) {
-  PlyHeader header = ReadHeader(bytes, source);
+  PlyHeader header = ReadPlyHeader(bytes, source);
   if (header.format != "ascii" && header.format != "binary_little_endian" &&
       header.format != "binary_big_endian") {
     Fail(source, "PLY format must be ascii, binary_little_endian or binary_big_endian");
@@ -148,7 +145,7 @@ void WritePly(const std::string& path, const std::vector<Point>& points) {
     const float values[4] = {points[i].x, points[i].y, points[i].z, points[i].intensity};
     std::memcpy(&body[i * sizeof(values)], values, sizeof(values));
   }
-  WriteFile(path, {HeaderText(points.size()), body});
+  WriteFile(path, {PlyHeaderText(points.size()), body});
 }
 
 }  // namespace hv

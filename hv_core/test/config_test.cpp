@@ -47,7 +47,7 @@ OuterConfig Parse(const std::string& text) {
   return config;
 }
 
-std::string ErrorOf(const std::string& text) {
+std::string RefusalOf(const std::string& text) {
   try {
     Parse(text);
   } catch (const InputError& error) {
@@ -65,8 +65,8 @@ TEST(Config, AbsentKeysKeepDefaults) {
 }
 
 TEST(Config, EmptyDocumentAndEmptySectionAreFine) {
-  EXPECT_EQ(ErrorOf(""), "");
-  EXPECT_EQ(ErrorOf("map:\n"), "");
+  EXPECT_EQ(RefusalOf(""), "");
+  EXPECT_EQ(RefusalOf("map:\n"), "");
 }
 
 TEST(Config, FillsEveryType) {
@@ -79,35 +79,35 @@ TEST(Config, FillsEveryType) {
 }
 
 TEST(Config, UnknownKeyNamesTheNearest) {
-  EXPECT_EQ(ErrorOf("enabled: true\nmap:\n  voxel_siz_m: 1\n"),
+  EXPECT_EQ(RefusalOf("enabled: true\nmap:\n  voxel_siz_m: 1\n"),
             "test.yaml:3: map.voxel_siz_m: unknown key; nearest is 'voxel_size_m'");
 }
 
 TEST(Config, WrongTypesAreRefusedWithPosition) {
-  EXPECT_EQ(ErrorOf("enabled: 1\n"), "test.yaml:1: enabled: must be true or false");
-  EXPECT_EQ(ErrorOf("map: {layers: 2.5}\n"), "test.yaml:1: map.layers: must be a whole number");
-  EXPECT_EQ(ErrorOf("map: {layers: 99999999999}\n"),
+  EXPECT_EQ(RefusalOf("enabled: 1\n"), "test.yaml:1: enabled: must be true or false");
+  EXPECT_EQ(RefusalOf("map: {layers: 2.5}\n"), "test.yaml:1: map.layers: must be a whole number");
+  EXPECT_EQ(RefusalOf("map: {layers: 99999999999}\n"),
             "test.yaml:1: map.layers: must be a whole number");
-  EXPECT_EQ(ErrorOf("map: {voxel_size_m: '1'}\n"),
+  EXPECT_EQ(RefusalOf("map: {voxel_size_m: '1'}\n"),
             "test.yaml:1: map.voxel_size_m: must be a finite number");
-  EXPECT_EQ(ErrorOf("map: {voxel_size_m: .inf}\n"),
+  EXPECT_EQ(RefusalOf("map: {voxel_size_m: .inf}\n"),
             "test.yaml:1: map.voxel_size_m: must be a finite number");
-  EXPECT_EQ(ErrorOf("map:\n  voxel_size_m:\n"),
+  EXPECT_EQ(RefusalOf("map:\n  voxel_size_m:\n"),
             "test.yaml:2: map.voxel_size_m: must be a finite number");
-  EXPECT_EQ(ErrorOf("gravity: 9.81\n"), "test.yaml:1: gravity: must be a list of finite numbers");
-  EXPECT_EQ(ErrorOf("gravity: [0, 0, down]\n"),
+  EXPECT_EQ(RefusalOf("gravity: 9.81\n"), "test.yaml:1: gravity: must be a list of finite numbers");
+  EXPECT_EQ(RefusalOf("gravity: [0, 0, down]\n"),
             "test.yaml:1: gravity: must be a list of finite numbers");
-  EXPECT_EQ(ErrorOf("topic: [a]\n"), "test.yaml:1: topic: must be a text");
-  EXPECT_EQ(ErrorOf("map: 3\n"), "test.yaml:1: map: must be a mapping of keys to values");
-  EXPECT_EQ(ErrorOf("- 1\n"), "test.yaml:1: must be a mapping of keys to values");
+  EXPECT_EQ(RefusalOf("topic: [a]\n"), "test.yaml:1: topic: must be a text");
+  EXPECT_EQ(RefusalOf("map: 3\n"), "test.yaml:1: map: must be a mapping of keys to values");
+  EXPECT_EQ(RefusalOf("- 1\n"), "test.yaml:1: must be a mapping of keys to values");
 }
 
 TEST(Config, KeyGivenTwiceIsRefused) {
-  EXPECT_EQ(ErrorOf("topic: a\ntopic: b\n"), "test.yaml:2: topic: given twice");
+  EXPECT_EQ(RefusalOf("topic: a\ntopic: b\n"), "test.yaml:2: topic: given twice");
 }
 
 TEST(Config, ReportsEveryProblemAtOnce) {
-  EXPECT_EQ(ErrorOf("enable: true\ntopic: {}\ngravity: [1]\nmap: {voxel_size_m: -1, layer: 1}\n"),
+  EXPECT_EQ(RefusalOf("enable: true\ntopic: {}\ngravity: [1]\nmap: {voxel_size_m: -1, layer: 1}\n"),
             "test.yaml:2: topic: must be a text\n"
             "test.yaml:4: map.layer: unknown key; nearest is 'layers'\n"
             "test.yaml:1: enable: unknown key; nearest is 'enabled'\n"
@@ -116,7 +116,7 @@ TEST(Config, ReportsEveryProblemAtOnce) {
 }
 
 TEST(Config, SyntaxErrorHasPosition) {
-  const std::string error = ErrorOf("map: {layers: 1\nx");
+  const std::string error = RefusalOf("map: {layers: 1\nx");
   EXPECT_EQ(error.rfind("test.yaml:", 0), 0U) << error;
   EXPECT_NE(error.find("not valid YAML"), std::string::npos) << error;
   EXPECT_EQ(error.find('\n'), std::string::npos) << error;

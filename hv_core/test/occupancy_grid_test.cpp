@@ -11,7 +11,7 @@ const char* kYaml =
     "image: a.pgm\nresolution: 0.5\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\n"
     "free_thresh: 0.196\n";
 
-OccupancyGrid Parse(const std::string& yaml, const std::string& pgm) {
+OccupancyGrid ParseCells(const std::string& yaml, const std::string& pgm) {
   return ParseGrid(yaml, "yaml", pgm, "pgm");
 }
 
@@ -28,7 +28,7 @@ TEST(OccupancyGridFile, ReadsBackWhatWasWritten) {
 }
 
 TEST(OccupancyGridFile, FirstRowOfThePictureIsTheLast) {
-  const OccupancyGrid grid = Parse(kYaml, "P2\n# comment\n2 2\n255\n0 254\n205 254\n");
+  const OccupancyGrid grid = ParseCells(kYaml, "P2\n# comment\n2 2\n255\n0 254\n205 254\n");
   EXPECT_EQ(grid.At(0, 1), OccupancyGrid::kOccupied);
   EXPECT_EQ(grid.At(1, 1), OccupancyGrid::kFree);
   EXPECT_EQ(grid.At(0, 0), OccupancyGrid::kUnknown);
@@ -50,12 +50,12 @@ TEST(OccupancyGridFile, FaultsAreNamed) {
       {changed("[1, 2, 0]", "[1, 2, 0.5]"), "yaml: an origin with a rotation"},
       {changed("negate: 0", "negate: [0"), "yaml:"}};
   for (const auto& [yaml, expected] : yamls) {
-    const std::string error = ErrorOf([&yaml = yaml, &pgm] { Parse(yaml, pgm); });
+    const std::string error = ErrorOf([&yaml = yaml, &pgm] { ParseCells(yaml, pgm); });
     EXPECT_EQ(error.rfind(expected, 0), 0U) << error;
   }
   for (const char* bad : {"", "P6 1 1 255 0", "P2 0 1 255 0", "P2 1 1 65535 0", "P2 2 2 255 0 0",
                           "P5 2 2 255 abc", "P2 1 1 255 256", "P5 99999999 99999999 255 a"}) {
-    const std::string error = ErrorOf([bad] { Parse(kYaml, bad); });
+    const std::string error = ErrorOf([bad] { ParseCells(kYaml, bad); });
     EXPECT_EQ(error.rfind("pgm: ", 0), 0U) << bad << " gave '" << error << "'";
   }
 }

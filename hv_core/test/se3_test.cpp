@@ -11,7 +11,6 @@
 namespace hv {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 /// Tangent vectors with rotations of zero, tiny, random and almost-pi length and translations from
 /// zero to 10 m.
@@ -20,7 +19,7 @@ std::vector<Vector6d> TangentVectors() {
   std::normal_distribution<double> normal;
   std::vector<Vector6d> vectors = {Vector6d::Zero()};
   for (const double angle : {0.0, 1e-12, 1e-8, 9.9e-5, 1.01e-4, 1e-3, 9.9e-3, 1.01e-2, 0.1, 1.0,
-                             2.5, kPi - 1e-3, kPi - 1e-6}) {
+                             2.5, M_PI - 1e-3, M_PI - 1e-6}) {
     for (const double length : {0.0, 1e-9, 1.0, 10.0}) {
       Vector6d xi;
       for (int k = 0; k < 6; ++k) xi[k] = normal(random);
@@ -69,7 +68,7 @@ TEST(Se3, AdjointMovesPerturbationsAcross) {
 }
 
 /// Central difference of d -> Log(Exp(xi)^-1 Exp(xi + d)).
-Matrix6d NumericRightJacobian(const Vector6d& xi) {
+Matrix6d NumericPoseJacobian(const Vector6d& xi) {
   constexpr double kStep = 1e-5;
   const Pose inverse = se3::Exp(xi).inverse();
   Matrix6d jacobian;
@@ -85,7 +84,7 @@ Matrix6d NumericRightJacobian(const Vector6d& xi) {
 
 TEST(Se3, RightJacobianAgreesWithNumericOne) {
   for (const Vector6d& xi : TangentVectors()) {
-    EXPECT_LT((se3::RightJacobian(xi) - NumericRightJacobian(xi)).norm(), 2e-8) << xi.transpose();
+    EXPECT_LT((se3::RightJacobian(xi) - NumericPoseJacobian(xi)).norm(), 2e-8) << xi.transpose();
   }
 }
 
@@ -107,7 +106,7 @@ TEST(Se3, JacobianInversesInvert) {
 TEST(Se3, MakePoseNormalisesQuaternions) {
   const Eigen::Quaterniond rotation(2.0, 0.0, 0.0, 2.0);
   const Pose pose = MakePose(rotation, Eigen::Vector3d(1.0, 2.0, 3.0));
-  EXPECT_LT((pose.linear() - RotationFromRpy(0.0, 0.0, kPi / 2.0)).norm(), 1e-14);
+  EXPECT_LT((pose.linear() - RotationFromRpy(0.0, 0.0, M_PI / 2.0)).norm(), 1e-14);
 }
 
 TEST(Se3, RotationFromRpyOrdersYawPitchRoll) {
@@ -118,7 +117,7 @@ TEST(Se3, RotationFromRpyOrdersYawPitchRoll) {
 }
 
 TEST(Se3, RotationDistanceIsTheAngle) {
-  for (const double angle : {0.0, 1e-7, 0.5, 3.0, kPi}) {
+  for (const double angle : {0.0, 1e-7, 0.5, 3.0, M_PI}) {
     const Pose a = MakePose(RotationFromRpy(0.4, -0.2, 1.0), Eigen::Vector3d::Zero());
     const Pose b = a * Eigen::AngleAxisd(angle, Eigen::Vector3d(1.0, 2.0, 3.0).normalized());
     EXPECT_NEAR(RotationDistance(a, b), angle, 1e-9);

@@ -10,7 +10,6 @@
 namespace hv::so3 {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 
 /// Rotation vectors of zero, tiny, series-boundary, random and almost-pi length, in fixed random
 /// directions.
@@ -19,7 +18,7 @@ std::vector<Eigen::Vector3d> RotationVectors(double longest) {
   std::normal_distribution<double> normal;
   std::vector<Eigen::Vector3d> vectors = {Eigen::Vector3d::Zero()};
   for (const double length : {1e-300, 1e-12, 1e-8, 1e-6, 9.9e-5, 1.01e-4, 5e-4, 1e-3, 9e-3, 1.1e-2,
-                              0.1, 1.0, 2.0, 3.0, kPi - 1e-3, kPi - 1e-6, kPi - 1e-9}) {
+                              0.1, 1.0, 2.0, 3.0, M_PI - 1e-3, M_PI - 1e-6, M_PI - 1e-9}) {
     if (length > longest) continue;
     for (int i = 0; i < 5; ++i) {
       const Eigen::Vector3d direction(normal(random), normal(random), normal(random));
@@ -30,7 +29,7 @@ std::vector<Eigen::Vector3d> RotationVectors(double longest) {
 }
 
 TEST(So3, ExpAgreesWithAngleAxis) {
-  for (const Eigen::Vector3d& theta : RotationVectors(kPi)) {
+  for (const Eigen::Vector3d& theta : RotationVectors(M_PI)) {
     const Eigen::AngleAxisd expected(theta.norm(), theta.norm() > 0.0
                                                        ? Eigen::Vector3d(theta.normalized())
                                                        : Eigen::Vector3d::UnitX());
@@ -39,7 +38,7 @@ TEST(So3, ExpAgreesWithAngleAxis) {
 }
 
 TEST(So3, ExpIsARotation) {
-  for (const Eigen::Vector3d& theta : RotationVectors(kPi)) {
+  for (const Eigen::Vector3d& theta : RotationVectors(M_PI)) {
     const Eigen::Matrix3d rotation = Exp(theta);
     EXPECT_LT((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
     EXPECT_NEAR(rotation.determinant(), 1.0, 1e-14);
@@ -47,18 +46,18 @@ TEST(So3, ExpIsARotation) {
 }
 
 TEST(So3, LogInvertsExp) {
-  for (const Eigen::Vector3d& theta : RotationVectors(kPi)) {
+  for (const Eigen::Vector3d& theta : RotationVectors(M_PI)) {
     const double tolerance = 1e-14 + 1e-13 * theta.norm();
     EXPECT_LT((Log(Exp(theta)) - theta).norm(), tolerance) << theta.norm();
   }
 }
 
 TEST(So3, LogAtPiIsAHalfTurn) {
-  for (const Eigen::Vector3d& theta : RotationVectors(kPi)) {
+  for (const Eigen::Vector3d& theta : RotationVectors(M_PI)) {
     if (theta.norm() < 1e-3) continue;
-    const Eigen::Vector3d half_turn = theta.normalized() * kPi;
+    const Eigen::Vector3d half_turn = theta.normalized() * M_PI;
     const Eigen::Vector3d log = Log(Exp(half_turn));
-    EXPECT_NEAR(log.norm(), kPi, 1e-9);
+    EXPECT_NEAR(log.norm(), M_PI, 1e-9);
     EXPECT_LT((Exp(log) - Exp(half_turn)).norm(), 1e-9);
   }
 }
@@ -82,13 +81,13 @@ Eigen::Matrix3d NumericRightJacobian(const Eigen::Vector3d& theta) {
 }
 
 TEST(So3, RightJacobianAgreesWithNumericOne) {
-  for (const Eigen::Vector3d& theta : RotationVectors(kPi)) {
+  for (const Eigen::Vector3d& theta : RotationVectors(M_PI)) {
     EXPECT_LT((RightJacobian(theta) - NumericRightJacobian(theta)).norm(), 1e-9) << theta.norm();
   }
 }
 
 TEST(So3, LeftJacobianIsExpTimesRightJacobian) {
-  for (const Eigen::Vector3d& theta : RotationVectors(kPi)) {
+  for (const Eigen::Vector3d& theta : RotationVectors(M_PI)) {
     EXPECT_LT((LeftJacobian(theta) - Exp(theta) * RightJacobian(theta)).norm(), 1e-8)
         << theta.norm();
   }
@@ -96,14 +95,14 @@ TEST(So3, LeftJacobianIsExpTimesRightJacobian) {
 
 TEST(So3, JacobianInversesInvert) {
   const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
-  for (const Eigen::Vector3d& theta : RotationVectors(kPi)) {
+  for (const Eigen::Vector3d& theta : RotationVectors(M_PI)) {
     EXPECT_LT((RightJacobian(theta) * RightJacobianInverse(theta) - identity).norm(), 1e-8);
     EXPECT_LT((LeftJacobian(theta) * LeftJacobianInverse(theta) - identity).norm(), 1e-8);
   }
 }
 
 TEST(So3, NormalizeRepairsAndKeepsRotations) {
-  for (const Eigen::Vector3d& theta : RotationVectors(kPi)) {
+  for (const Eigen::Vector3d& theta : RotationVectors(M_PI)) {
     const Eigen::Matrix3d rotation = Exp(theta);
     EXPECT_LT((Normalize(rotation) - rotation).norm(), 1e-14);
     const Eigen::Matrix3d repaired = Normalize(rotation + 1e-3 * Eigen::Matrix3d::Ones());

@@ -9,6 +9,7 @@
 #include "hv_core/config.h"
 #include "hv_explore_sac/policy/planner_maker.h"
 #include "hv_ros/conversions.h"
+#include "hv_ros/latched.h"
 #include "hv_ros/message_checks.h"
 #include "hv_ros/newest_transform.h"
 #include "viewpoint_markers.h"
@@ -19,7 +20,6 @@ namespace {
 constexpr double kCycle_s = 0.2;
 constexpr int kCyclesPerReport = 5;
 constexpr double kPicture_s = 1.0;
-constexpr bool kLatched = true;
 
 }  // namespace
 

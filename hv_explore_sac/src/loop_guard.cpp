@@ -13,14 +13,6 @@ int NodeAt(const Eigen::Vector2i& cell, const Observation& observation,
   return Observation::kRobot;
 }
 
-/// Nodes come by increasing distance.
-int NearestWithUtility(const Observation& observation) {
-  const auto found = std::find_if(observation.nodes.begin(), observation.nodes.end(),
-                                  [](const Observation::Node& node) { return node.utility > 0; });
-  return found == observation.nodes.end() ? Observation::kRobot
-                                          : static_cast<int>(found - observation.nodes.begin());
-}
-
 }  // namespace
 
 void GuardConfig::Describe(ConfigVisitor& visitor) {
@@ -47,7 +39,7 @@ Decision LoopGuard::Review(const Decision& decision, const Observation& observat
   if (observation.node(goal).utility == 0) goal_.reset();
   if (!goal_ && in_loop) {
     ++interventions_;
-    goal = NearestWithUtility(observation);
+    goal = observation.NearestWithUtility();
     goal_ = model.graph().CellOf(observation.node(goal).viewpoint);
   }
   if (!goal_) return decision;

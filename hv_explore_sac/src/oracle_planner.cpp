@@ -6,13 +6,6 @@ namespace {
 /// How much harder the route of the first decision is looked for.
 constexpr int kFirstFactor = 10;
 
-int NearestWithUtility(const Observation& observation) {
-  for (int i = 0; i < observation.size(); ++i) {
-    if (observation.node(i).utility > 0) return i;
-  }
-  return Observation::kRobot;
-}
-
 }  // namespace
 
 OraclePlanner::OraclePlanner(const PlannerInputs& inputs)
@@ -30,7 +23,7 @@ Decision OraclePlanner::Choose(const Observation& observation, const Exploration
   route_ = search_.Plan(here, knowledge_.KnownIn(model.belief()), std::move(route_), trials);
   int goal = Observation::kRobot;
   if (!route_.empty()) goal = FarthestKnown(here, route_.front(), observation, model);
-  if (goal == Observation::kRobot) goal = NearestWithUtility(observation);
+  if (goal == Observation::kRobot) goal = observation.NearestWithUtility();
   return {observation.FirstHopTo(goal), goal};
 }
 

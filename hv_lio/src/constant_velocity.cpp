@@ -8,7 +8,7 @@
 namespace hv::lio {
 namespace {
 
-constexpr double kLongestStep = 0.01;
+constexpr double kLongestStride = 0.01;
 
 }  // namespace
 
@@ -50,7 +50,7 @@ ImuNoiseConfig ConstantVelocityModel::Noise() const {
 std::vector<ImuStep> ConstantVelocityModel::Steps(const NavState& state, double duration) const {
   std::vector<ImuStep> steps;
   if (duration <= 0.0) return steps;
-  const int count = static_cast<int>(std::ceil(duration / kLongestStep));
+  const int count = static_cast<int>(std::ceil(duration / kLongestStride));
   const double dt = duration / count;
   for (int i = 0; i < count; ++i) {
     const Eigen::Matrix3d middle = state.rotation * so3::Exp(angular_velocity_ * (i + 0.5) * dt);

@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hv_core/angles.h"
+
 namespace hv::lio {
-namespace {
-
-constexpr double kRadiansPerDegree = 0.017453292519943295;
-
-}  // namespace
 
 void PlaneMergeConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("enabled", enabled, "merge coplanar neighbouring voxels");

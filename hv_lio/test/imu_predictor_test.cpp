@@ -7,13 +7,13 @@
 namespace hv::lio {
 namespace {
 
-constexpr double kGravity = 9.80665;
+constexpr double kGravity_mps2 = 9.80665;
 
 /// Accelerates along x with 1 m/s^2 while level; readings in m/s^2 divided by `unit`.
 ImuSample SampleAt(double t, double unit = 1.0) {
   ImuSample sample;
   sample.stamp = Time::FromSeconds(t);
-  sample.acceleration = Eigen::Vector3d(1.0, 0.0, kGravity) / unit;
+  sample.acceleration = Eigen::Vector3d(1.0, 0.0, kGravity_mps2) / unit;
   return sample;
 }
 
@@ -23,7 +23,7 @@ OdometryEstimate EstimateAt(double t, double unit = 1.0) {
   estimate.stamp = Time::FromSeconds(t);
   estimate.T_odom_imu.translation().x() = 0.5 * t * t;
   estimate.velocity_odom = {t, 0.0, 0.0};
-  estimate.gravity_odom = {0.0, 0.0, -kGravity};
+  estimate.gravity_odom = {0.0, 0.0, -kGravity_mps2};
   estimate.pose_covariance = 1e-4 * Matrix6d::Identity();
   estimate.twist_covariance = 1e-4 * Matrix6d::Identity();
   return estimate;
@@ -35,7 +35,7 @@ TEST(ImuPredictor, SaysNothingWithoutAnAnchor) {
 }
 
 TEST(ImuPredictor, FollowsTheMotionFromALateAnchor) {
-  for (const double unit : {1.0, kGravity}) {
+  for (const double unit : {1.0, kGravity_mps2}) {
     ImuPredictor predictor({});
     for (int i = 0; i <= 40; ++i) predictor.Add(SampleAt(0.01 * i, unit));
     predictor.Anchor(EstimateAt(0.305, unit));  // between two samples, and older than the newest

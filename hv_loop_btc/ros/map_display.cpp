@@ -9,6 +9,7 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include "hv_ros/conversions.h"
+#include "hv_ros/latched.h"
 #include "loop_markers.h"
 
 namespace hv::loop {
@@ -40,7 +41,6 @@ MapDisplay::MapDisplay(ros::NodeHandle nh, const MappingConfig& config, const Lo
       engine_(engine),
       cloud_(config.mapping.cloud_voxel_m,
              static_cast<std::size_t>(config.mapping.cloud_max_points)) {
-  constexpr bool kLatched = true;
   path_.publisher = nh.advertise<nav_msgs::Path>("map_path", 1, kLatched);
   markers_.publisher = nh.advertise<visualization_msgs::MarkerArray>("loop_markers", 1, kLatched);
   cloud_topic_.publisher = nh.advertise<sensor_msgs::PointCloud2>("map_cloud", 1, kLatched);

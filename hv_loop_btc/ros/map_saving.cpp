@@ -3,14 +3,12 @@
 #include <chrono>
 #include <utility>
 
+#include "hv_core/elapsed.h"
+
 namespace hv::loop {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 SaveOutcome Failure(const std::string& message) { return {false, message, {}}; }
 

@@ -6,6 +6,7 @@
 #include <ros/console.h>
 
 #include "hv_core/config.h"
+#include "hv_core/elapsed.h"
 
 namespace hv::loop {
 namespace {
@@ -18,10 +19,6 @@ constexpr double kTimeToEnd = 13.0;        // [s]
 constexpr double kTimeForKeyframes = 5.0;  // of these, for keyframes that still wait [s]
 
 using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 TransformOptions TransformsOf(const MappingNodeConfig& config) {
   return {config.map_frame, config.publish_tf, config.tf_tolerance_s, config.correction_s};

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
+#include "hv_core/angles.h"
 #include "hv_loop_btc/pose_graph_residuals.h"
 
 namespace hv::loop {
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
 /// Share of the work up to the first optimisation.
 constexpr double kAnywhereShare = 0.8;
 /// Sessions are not joined when more loops than this share of the accepted ones contradict them.
@@ -145,7 +145,8 @@ SessionJoinResult JoinAttempt::Outcome() const {
   }
   if (result.loops == 0) return result;
   result.residual_m = std::sqrt(squared_m / static_cast<double>(result.loops));
-  result.residual_deg = kDegrees * std::sqrt(squared_rad / static_cast<double>(result.loops));
+  result.residual_deg =
+      kDegreesPerRadian * std::sqrt(squared_rad / static_cast<double>(result.loops));
   return result;
 }
 

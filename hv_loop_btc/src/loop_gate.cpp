@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hv_core/angles.h"
+
 namespace hv::loop {
-namespace {
-
-constexpr double kRadians = M_PI / 180.0;
-
-}  // namespace
 
 void LoopGateConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("base_translation_m", base_translation_m,
@@ -37,14 +34,16 @@ void LoopGateConfig::Validate(ConfigProblems& problems) const {
 }
 
 DriftLimits LoopGate::LimitsAfter(double travelled_m) const {
-  const double bend = 0.5 * config_.drift_rotation_deg * kRadians * travelled_m * travelled_m;
+  const double bend =
+      0.5 * config_.drift_rotation_deg * kRadiansPerDegree * travelled_m * travelled_m;
   DriftLimits limits;
   limits.translation_m = config_.base_translation_m + config_.drift_translation * travelled_m +
                          std::min(bend, travelled_m);
   limits.vertical_m = config_.base_vertical_m + config_.drift_vertical * travelled_m;
-  limits.rotation_rad = std::min(
-      M_PI, (config_.base_rotation_deg + config_.drift_rotation_deg * travelled_m) * kRadians);
-  limits.tilt_rad = config_.tilt_deg * kRadians;
+  limits.rotation_rad =
+      std::min(M_PI, (config_.base_rotation_deg + config_.drift_rotation_deg * travelled_m) *
+                         kRadiansPerDegree);
+  limits.tilt_rad = config_.tilt_deg * kRadiansPerDegree;
   return limits;
 }
 

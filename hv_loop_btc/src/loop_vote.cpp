@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hv_core/angles.h"
+
 namespace hv::loop {
 namespace {
 
-constexpr double kRadians = M_PI / 180.0;
 /// Odometry between the two submaps may add this to their disagreement.
 constexpr double kDriftShare = 0.02;
-constexpr double kDriftRadPerM = 0.3 * kRadians;
+constexpr double kDriftRadPerM = 0.3 * kRadiansPerDegree;
 
 /// Where the candidate says that its newer submap is.
 Pose Place(const LoopCandidate& candidate, const LoopVote::Poses& poses) {
@@ -46,7 +47,7 @@ bool LoopVote::Agree(const LoopCandidate& a, const LoopCandidate& b, const Poses
   const Pose difference = T_a_b_odometry.inverse() * T_a_b;
   return difference.translation().norm() < config_.agree_m + kDriftShare * apart &&
          RotationDistance(T_a_b_odometry, T_a_b) <
-             config_.agree_deg * kRadians + kDriftRadPerM * apart;
+             config_.agree_deg * kRadiansPerDegree + kDriftRadPerM * apart;
 }
 
 LoopVote::Support LoopVote::SupportOf(const LoopCandidate& candidate, const Poses& poses) const {
@@ -70,7 +71,7 @@ bool LoopVote::IsExpected(const LoopCandidate& candidate,
   const Pose expected = circumstances.poses(candidate.query);
   const Pose place = Place(candidate, circumstances.poses);
   return (place.translation() - expected.translation()).norm() < circumstances.expected_m &&
-         RotationDistance(place, expected) < config_.agree_deg * kRadians;
+         RotationDistance(place, expected) < config_.agree_deg * kRadiansPerDegree;
 }
 
 bool LoopVote::UniqueNow(const Ballot& ballot, const Poses& poses) const {

@@ -3,20 +3,10 @@
 #include "hv_core/error.h"
 #include "hv_core/map_folder.h"
 #include "hv_loop_btc/submap_file.h"
+#include "required_parts.h"
 
 namespace hv::loop {
 namespace {
-
-void RequireParts(const MapFolder& map) {
-  const MapContents contents = map.contents();
-  const auto require = [&map](bool there, const char* what) {
-    if (there) return;
-    throw InputError(map.path() + ": cannot be continued, the map has no " + what);
-  };
-  require(contents.keyframes, "keyframes");
-  require(contents.graph, "graph");
-  require(contents.descriptors, "descriptors");
-}
 
 void AdoptKeyframes(const MapFolder& map, const PoseGraphData& graph, KeyframeStore& store) {
   for (const GraphVertex& vertex : graph.vertices) {
@@ -40,7 +30,7 @@ void CheckReferences(const StoredSubmaps& submaps, const KeyframeStore& store,
 
 SessionStart ContinueMap(const std::string& path, KeyframeStore& store, LoopCloser& closer) {
   const MapFolder map = MapFolder::Open(path);
-  RequireParts(map);
+  RequireParts(map, "continued");
   const PoseGraphData graph = map.ReadGraph();
   if (graph.vertices.empty()) throw InputError(map.path() + ": the graph has no keyframes");
   const std::string source = map.path() + "/descriptors.bin";

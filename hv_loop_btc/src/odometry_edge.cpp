@@ -4,10 +4,10 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "hv_core/angles.h"
+
 namespace hv::loop {
 namespace {
-
-constexpr double kRadiansPerDegree = 0.017453292519943295;
 
 /// The symmetric matrix with the absolute values of the eigenvalues.
 Matrix6d AbsoluteValue(const Matrix6d& symmetric) {

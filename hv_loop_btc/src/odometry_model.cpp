@@ -5,12 +5,12 @@
 
 #include <Eigen/Cholesky>
 
+#include "hv_core/angles.h"
 #include "hv_core/so3.h"
 
 namespace hv::loop {
 namespace {
 
-constexpr double kRadians = M_PI / 180.0;
 /// Loops before anything is said about systematic drift, their disagreement with odometry [sigmas],
 /// and the share of it that the drift has to explain.
 constexpr std::size_t kFewestLoops = 6;
@@ -19,10 +19,10 @@ constexpr double kExplains = 0.3;
 constexpr int kIterations = 8;
 /// What is believed of the drift without loops.
 constexpr double kPriorStretch = 0.02;
-constexpr double kPriorHeading = 0.5 * kRadians;
+constexpr double kPriorHeading = 0.5 * kRadiansPerDegree;
 /// Changes that are worth new edges: the same over a hundred metres moves keyframes visibly.
 constexpr double kNewStretch = 2e-4;
-constexpr double kNewHeading = 0.002 * kRadians;
+constexpr double kNewHeading = 0.002 * kRadiansPerDegree;
 constexpr double kNewScale = 1.3;
 /// The noise is this quantile of what single loops show, so that one false loop does not set it.
 constexpr double kQuantile = 0.7;
@@ -100,10 +100,10 @@ std::vector<Vector6d> OdometryModel::Residuals(const SystematicDrift& drift) con
     const Pose T_odometry = chain[loop.from].inverse() * chain[loop.to];
     const double way = Way(loop);
     const double turn_sigma =
-        std::hypot(kLoopError_rad, config_.rotation_drift_deg * kRadians * std::sqrt(way));
+        std::hypot(kLoopError_rad, config_.rotation_drift_deg * kRadiansPerDegree * std::sqrt(way));
     const double move_sigma =
         std::hypot(kLoopError_m, config_.translation_drift_m * std::sqrt(way)) +
-        kLever * way * config_.rotation_drift_deg * kRadians * std::sqrt(way);
+        kLever * way * config_.rotation_drift_deg * kRadiansPerDegree * std::sqrt(way);
     Vector6d residual = se3::Log(loop.T_from_to.inverse() * T_odometry);
     residual.head<3>() /= move_sigma;
     residual.tail<3>() /= turn_sigma;
@@ -166,7 +166,7 @@ bool OdometryModel::MeasureNoise() {
     const double moved = (loop.T_from_to.translation() - T_odometry.translation()).norm();
     const double straight = std::max(0.0, moved - kLever * turned * way);
     rotation.push_back(Excess(turned, kLoopError_rad) /
-                       (config_.rotation_drift_deg * kRadians * std::sqrt(way)));
+                       (config_.rotation_drift_deg * kRadiansPerDegree * std::sqrt(way)));
     translation.push_back(Excess(straight, kLoopError_m) /
                           (config_.translation_drift_m * std::sqrt(way)));
   }
@@ -199,7 +199,7 @@ bool OdometryModel::Learn() {
 double OdometryModel::ExpectedError(double way_m) const {
   if (loops_.size() < kFewestLoops) return 0.0;
   const double root = std::sqrt(way_m);
-  const double turn = rotation_scale_ * config_.rotation_drift_deg * kRadians * root;
+  const double turn = rotation_scale_ * config_.rotation_drift_deg * kRadiansPerDegree * root;
   const double move = translation_scale_ * config_.translation_drift_m * root;
   const double expected = kLeastExpected_m + 3.0 * (move + kLever * way_m * turn);
   return expected < kMostExpected_m ? expected : 0.0;

@@ -7,7 +7,7 @@
 namespace hv::loop {
 namespace {
 
-constexpr float kSameNormal = 0.978F;  // 12 deg
+constexpr float kParallelCosine = 0.978F;  // 12 deg
 
 }  // namespace
 
@@ -28,7 +28,7 @@ bool PlaneIndex::Matches(const PlaneVoxel& moved, float distance) const {
     if (found == index_.end()) continue;
     const PlaneVoxel& other = planes_[found->second];
     const Eigen::Vector3f offset = moved.center - other.center;
-    if (std::abs(moved.normal.dot(other.normal)) > kSameNormal &&
+    if (std::abs(moved.normal.dot(other.normal)) > kParallelCosine &&
         std::abs(offset.dot(other.normal)) < distance &&
         std::abs(offset.dot(moved.normal)) < distance) {
       return true;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "graph_solver.h"
+#include "hv_core/angles.h"
 #include "hv_loop_btc/pose_graph_residuals.h"
 #include "loop_judge.h"
 #include "segment_join.h"
@@ -11,7 +12,6 @@
 namespace hv::loop {
 namespace {
 
-constexpr double kRadiansPerDegree = 0.017453292519943295;
 constexpr int kMostReviews = 3;
 
 double Threshold(const PoseGraphConfig& config, double scale) {

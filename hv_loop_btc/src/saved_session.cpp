@@ -8,20 +8,10 @@
 
 #include "hv_core/config.h"
 #include "hv_core/error.h"
+#include "required_parts.h"
 
 namespace hv::loop {
 namespace {
-
-void RequireParts(const MapFolder& map) {
-  const MapContents contents = map.contents();
-  const auto require = [&map](bool there, const char* what) {
-    if (there) return;
-    throw InputError(map.path() + ": cannot be joined, the map has no " + what);
-  };
-  require(contents.keyframes, "keyframes");
-  require(contents.graph, "pose graph");
-  require(contents.descriptors, "descriptors");
-}
 
 void CheckKeyframes(const SavedSession& session) {
   if (session.graph.vertices.empty()) {
@@ -64,7 +54,7 @@ void KeepStampsApart(const PoseGraphData& before, PoseGraphData& graph) {
 }  // namespace
 
 SavedSession LoadSession(const MapFolder& map) {
-  RequireParts(map);
+  RequireParts(map, "joined");
   SavedSession session;
   session.name = map.path();
   session.graph = map.ReadGraph();

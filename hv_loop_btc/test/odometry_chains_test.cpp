@@ -19,10 +19,10 @@ std::vector<Measurement> Odometry(const GraphWorld& world) {
   return odometry;
 }
 
-GraphWorld SmallWorld() { return GraphWorld(CityDrive(200, 10, 3, 1), WorldNoise(), 2); }
+GraphWorld SmallCity() { return GraphWorld(CityDrive(200, 10, 3, 1), WorldNoise(), 2); }
 
 TEST(OdometryChains, ComposesEdgesWithCovarianceInBothDirections) {
-  const std::vector<Measurement> odometry = Odometry(SmallWorld());
+  const std::vector<Measurement> odometry = Odometry(SmallCity());
   const OdometryChains chains(200, odometry);
   UncertainPose composed;
   for (std::size_t i = 40; i < 90; ++i) {
@@ -54,7 +54,7 @@ TEST(OdometryChains, CovarianceIsThatOfManyRuns) {
 }
 
 TEST(OdometryChains, KeepsSegmentsApart) {
-  std::vector<Measurement> odometry = Odometry(SmallWorld());
+  std::vector<Measurement> odometry = Odometry(SmallCity());
   odometry.erase(odometry.begin() + 99);  // 99 -> 100
   const OdometryChains chains(200, odometry);
   EXPECT_TRUE(chains.SameChain(0, 99));
@@ -63,7 +63,7 @@ TEST(OdometryChains, KeepsSegmentsApart) {
 }
 
 TEST(Skeleton, KeepsTouchedVerticesAndStartsOfChains) {
-  GraphWorld world = SmallWorld();
+  GraphWorld world = SmallCity();
   std::vector<Measurement> odometry = Odometry(world);
   odometry.erase(odometry.begin() + 99);
   const OdometryChains chains(200, odometry);
@@ -78,7 +78,7 @@ TEST(Skeleton, KeepsTouchedVerticesAndStartsOfChains) {
 }
 
 TEST(Skeleton, HasTheSolutionOfTheWholeGraph) {
-  GraphWorld world = SmallWorld();
+  GraphWorld world = SmallCity();
   const std::vector<Measurement> odometry = Odometry(world);
   const OdometryChains chains(200, odometry);
   const std::vector<Measurement> loops = {Indexed(world.TrueLoop(0, 120)),

@@ -27,7 +27,7 @@ Keyframe MakeKeyframe(std::uint32_t id, const Pose& T_odom_imu) {
   return keyframe;
 }
 
-const Keyframe kFrom = MakeKeyframe(4, MakePose(RotationFromRpy(0.1, -0.2, 1.0), {10.0, 5.0, 1.0}));
+const Keyframe kFromKeyframe = MakeKeyframe(4, MakePose(RotationFromRpy(0.1, -0.2, 1.0), {10.0, 5.0, 1.0}));
 const Keyframe kTo = MakeKeyframe(5, MakePose(RotationFromRpy(0.2, -0.1, 1.7), {11.0, 6.0, 1.1}));
 
 Eigen::Vector3d TranslationVariances(const GraphEdge& edge) {
@@ -44,13 +44,13 @@ double VarianceAlong(const GraphEdge& edge, const Eigen::Vector3d& direction_odo
 }
 
 TEST(RightCovariance, IsThatOfTheRightPerturbation) {
-  Keyframe keyframe = kFrom;
+  Keyframe keyframe = kFromKeyframe;
   keyframe.covariance = SampleCovariance(1);
   // The keyframe's error: position added, rotation multiplied from the left, both in axes of odom.
   const auto error_in_odom = [&](const Pose& moved) {
     Eigen::VectorXd error(6);
-    error << moved.translation() - kFrom.T_odom_imu.translation(),
-        so3::Log(moved.linear() * kFrom.T_odom_imu.linear().transpose());
+    error << moved.translation() - kFromKeyframe.T_odom_imu.translation(),
+        so3::Log(moved.linear() * kFromKeyframe.T_odom_imu.linear().transpose());
     return error;
   };
   const Matrix6d odom_by_right = NumericJacobian(error_in_odom, keyframe.T_odom_imu);
@@ -59,14 +59,14 @@ TEST(RightCovariance, IsThatOfTheRightPerturbation) {
 }
 
 TEST(RelativeCovariance, WithoutCorrelationPropagatesBothPoses) {
-  const Pose T_from_to = kFrom.T_odom_imu.inverse() * kTo.T_odom_imu;
+  const Pose T_from_to = kFromKeyframe.T_odom_imu.inverse() * kTo.T_odom_imu;
   const auto error = [&](const Pose& from, const Pose& to) {
     return Eigen::VectorXd(se3::Log(T_from_to.inverse() * from.inverse() * to));
   };
   const Matrix6d by_from = NumericJacobian(
-      [&](const Pose& pose) { return error(pose, kTo.T_odom_imu); }, kFrom.T_odom_imu);
+      [&](const Pose& pose) { return error(pose, kTo.T_odom_imu); }, kFromKeyframe.T_odom_imu);
   const Matrix6d by_to = NumericJacobian(
-      [&](const Pose& pose) { return error(kFrom.T_odom_imu, pose); }, kTo.T_odom_imu);
+      [&](const Pose& pose) { return error(kFromKeyframe.T_odom_imu, pose); }, kTo.T_odom_imu);
   const Matrix6d expected = by_from * SampleCovariance(2) * by_from.transpose() +
                             by_to * SampleCovariance(3) * by_to.transpose();
   const Matrix6d covariance =
@@ -77,7 +77,7 @@ TEST(RelativeCovariance, WithoutCorrelationPropagatesBothPoses) {
 TEST(RelativeCovariance, WithFullCorrelationOnlyGrowthCounts) {
   const Matrix6d before = SampleCovariance(4);
   const Matrix6d growth = SampleCovariance(5);
-  const Pose T_from_to = kFrom.T_odom_imu.inverse() * kTo.T_odom_imu;
+  const Pose T_from_to = kFromKeyframe.T_odom_imu.inverse() * kTo.T_odom_imu;
   const Matrix6d adjoint = se3::Adjoint(T_from_to.inverse());
   const Matrix6d after = adjoint * before * adjoint.transpose() + growth;
   EXPECT_LT((RelativeCovariance(T_from_to, before, after, 1.0) - growth).norm(),
@@ -85,11 +85,11 @@ TEST(RelativeCovariance, WithFullCorrelationOnlyGrowthCounts) {
 }
 
 TEST(OdometryEdge, MeasuresTheStepBetweenKeyframes) {
-  const GraphEdge edge = OdometryEdge(OdometryEdgeConfig(), kFrom, kTo);
+  const GraphEdge edge = OdometryEdge(OdometryEdgeConfig(), kFromKeyframe, kTo);
   EXPECT_EQ(edge.kind, EdgeKind::kOdometry);
   EXPECT_EQ(edge.from, 4U);
   EXPECT_EQ(edge.to, 5U);
-  const Pose to = kFrom.T_odom_imu * edge.T_from_to;
+  const Pose to = kFromKeyframe.T_odom_imu * edge.T_from_to;
   EXPECT_LT((to.matrix() - kTo.T_odom_imu.matrix()).norm(), 1e-12);
   EXPECT_EQ(edge.information, edge.information.transpose());
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix6d>(edge.information).eigenvalues().minCoeff(),
@@ -98,7 +98,7 @@ TEST(OdometryEdge, MeasuresTheStepBetweenKeyframes) {
 
 TEST(OdometryEdge, PerfectPosesStillDrift) {
   const OdometryEdgeConfig config;
-  Keyframe from = kFrom;
+  Keyframe from = kFromKeyframe;
   Keyframe to = kTo;
   from.covariance.setZero();
   to.covariance.setZero();
@@ -110,19 +110,19 @@ TEST(OdometryEdge, PerfectPosesStillDrift) {
 }
 
 TEST(OdometryEdge, VarianceGrowsWithTheDistance) {
-  const Keyframe far = MakeKeyframe(5, kFrom.T_odom_imu * Eigen::Translation3d(30.0, 0.0, 0.0));
-  const Keyframe near = MakeKeyframe(5, kFrom.T_odom_imu * Eigen::Translation3d(0.1, 0.0, 0.0));
+  const Keyframe far = MakeKeyframe(5, kFromKeyframe.T_odom_imu * Eigen::Translation3d(30.0, 0.0, 0.0));
+  const Keyframe near = MakeKeyframe(5, kFromKeyframe.T_odom_imu * Eigen::Translation3d(0.1, 0.0, 0.0));
   const OdometryEdgeConfig config;
-  EXPECT_GT(TranslationVariances(OdometryEdge(config, kFrom, far)).x(),
-            2.0 * TranslationVariances(OdometryEdge(config, kFrom, near)).x());
+  EXPECT_GT(TranslationVariances(OdometryEdge(config, kFromKeyframe, far)).x(),
+            2.0 * TranslationVariances(OdometryEdge(config, kFromKeyframe, near)).x());
 }
 
 TEST(OdometryEdge, DegenerateDirectionsAreInflatedAndOthersAreNot) {
   const OdometryEdgeConfig config;
   const Eigen::Vector3d along = Eigen::Vector3d(1.0, 2.0, 0.0).normalized();
   const Eigen::Vector3d across = Eigen::Vector3d(2.0, -1.0, 0.0).normalized();
-  const GraphEdge plain = OdometryEdge(config, kFrom, kTo);
-  Keyframe from = kFrom;
+  const GraphEdge plain = OdometryEdge(config, kFromKeyframe, kTo);
+  Keyframe from = kFromKeyframe;
   Keyframe to = kTo;
   for (Keyframe* keyframe : {&from, &to}) {
     keyframe->degenerate_translation = {along};
@@ -142,11 +142,11 @@ TEST(OdometryEdge, DegenerateDirectionsAreInflatedAndOthersAreNot) {
 TEST(OdometryEdge, RefusesKeyframesOfDifferentSegments) {
   Keyframe to = kTo;
   to.segment = 1;
-  EXPECT_THROW(OdometryEdge(OdometryEdgeConfig(), kFrom, to), InputError);
+  EXPECT_THROW(OdometryEdge(OdometryEdgeConfig(), kFromKeyframe, to), InputError);
 }
 
 TEST(UpInImu, PointsUpAtTheKeyframe) {
-  const Eigen::Vector3d up_odom = kFrom.T_odom_imu.linear() * UpInImu(kFrom);
+  const Eigen::Vector3d up_odom = kFromKeyframe.T_odom_imu.linear() * UpInImu(kFromKeyframe);
   EXPECT_LT((up_odom - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
 }
 

@@ -7,11 +7,10 @@
 #include <nav_msgs/Path.h>
 
 #include "hv_ros/conversions.h"
+#include "hv_ros/latched.h"
 
 namespace hv::navigation {
 namespace {
-
-constexpr bool kLatched = true;
 
 nav_msgs::Path ToPathMessage(const Path& path, const std::string& frame, Time stamp, double z) {
   nav_msgs::Path message;

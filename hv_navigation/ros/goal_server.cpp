@@ -6,12 +6,12 @@
 
 #include "frames.h"
 #include "hv_ros/conversions.h"
+#include "hv_ros/latched.h"
 #include "hv_ros/message_checks.h"
 
 namespace hv::navigation {
 namespace {
 
-constexpr bool kLatched = true;
 constexpr bool kStartLater = false;
 
 }  // namespace

@@ -3,13 +3,9 @@
 #include <nav_msgs/OccupancyGrid.h>
 
 #include "hv_ros/conversions.h"
+#include "hv_ros/latched.h"
 
 namespace hv::navigation {
-namespace {
-
-constexpr bool kLatched = true;
-
-}  // namespace
 
 GridPublisher::GridPublisher(ros::NodeHandle nh, const NavigationNodeOptions& options)
     : options_(options),

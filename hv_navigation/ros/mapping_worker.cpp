@@ -8,15 +8,11 @@
 #include <ros/console.h>
 
 #include "depth_message.h"
+#include "hv_core/elapsed.h"
 #include "hv_core/error.h"
 
 namespace hv::navigation {
 namespace {
-
-double MillisecondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
-}
 
 /// The LiDAR with the axes of the IMU, in which tracked scans come.
 std::vector<Point> AboutLidar(const DecodedTrackedScan& scan) {

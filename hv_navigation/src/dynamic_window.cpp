@@ -12,7 +12,7 @@ namespace {
 constexpr double kMarginStep_m = 0.01;
 constexpr double kStanding_mps = 0.02;
 constexpr double kStanding_rps = 0.05;
-constexpr double kWindow_m = 3.0;  // of the path that is compared
+constexpr double kCompared_m = 3.0;  // of the path that is compared
 constexpr double kLeastProgress_m = 0.005;
 
 }  // namespace
@@ -145,7 +145,7 @@ double DynamicWindow::Progress(const PlanarPose& pose) const {
     const Eigen::Vector2d stop = tracker_.StopPoint();
     return (pose_.position - stop).norm() - (pose.position - stop).norm();
   }
-  return tracker_.Nearest(pose.position, kWindow_m).along_m - tracker_.Along();
+  return tracker_.Nearest(pose.position, kCompared_m).along_m - tracker_.Along();
 }
 
 /// Simulates to the horizon, or to the first obstacle, and scores. False when it does not get on.
@@ -166,12 +166,12 @@ bool DynamicWindow::Rollout(const Velocity& target, Candidate& candidate) const 
     if (ahead_.MayTouch(footprint_, pose, config_.step_s * (free + 1))) break;
     candidate.trajectory.push_back(pose);
     nearness += Nearness(pose);
-    off_path_m += tracker_.Nearest(pose.position, kWindow_m).distance_m;
+    off_path_m += tracker_.Nearest(pose.position, kCompared_m).distance_m;
   }
   if (free == 0) return false;
   const PlanarPose& last = candidate.trajectory.back();
   const double heading =
-      WrappedAngle(tracker_.Nearest(last.position, kWindow_m).heading - last.yaw);
+      WrappedAngle(tracker_.Nearest(last.position, kCompared_m).heading - last.yaw);
   const double change =
       std::abs(candidate.command.angular_rps - now_.angular_rps) / limits_.max_angular_rps +
       std::abs(candidate.command.linear_mps - now_.linear_mps) / limits_.max_linear_mps;

@@ -6,7 +6,7 @@
 namespace hv::navigation {
 namespace {
 
-constexpr double kSamePlace_m = 1e-6;
+constexpr double kSamePoint_m = 1e-6;
 
 }  // namespace
 
@@ -14,7 +14,7 @@ TurnDriveTurn Between(const PlanarPose& from, const PlanarPose& to) {
   TurnDriveTurn motion;
   const Eigen::Vector2d way = to.position - from.position;
   motion.length_m = way.norm();
-  motion.heading = motion.length_m > kSamePlace_m ? std::atan2(way.y(), way.x()) : to.yaw;
+  motion.heading = motion.length_m > kSamePoint_m ? std::atan2(way.y(), way.x()) : to.yaw;
   motion.first_turn = WrappedAngle(motion.heading - from.yaw);
   motion.last_turn = WrappedAngle(to.yaw - motion.heading);
   return motion;

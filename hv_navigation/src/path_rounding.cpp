@@ -6,7 +6,7 @@
 namespace hv::navigation {
 namespace {
 
-constexpr double kSamePlace_m = 1e-4;
+constexpr double kSameCorner_m = 1e-4;
 constexpr double kTurnStep = 0.2;   // rad
 constexpr double kNoCorner = 1e-3;  // rad
 constexpr double kSmallestRadius_m = 0.05;
@@ -48,7 +48,7 @@ class Rounder {
       : space_(space), rules_(rules), writer_(chain.front(), rules.step_m) {
     for (const PlanarPose& pose : chain) {
       const bool moved =
-          chain_.empty() || (pose.position - chain_.back().position).norm() > kSamePlace_m;
+          chain_.empty() || (pose.position - chain_.back().position).norm() > kSameCorner_m;
       if (moved) chain_.push_back(pose);
       last_yaw_ = pose.yaw;
     }

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-const DepthCameraModel kCamera{385.0, 386.0, 320.5, 239.0};
+const DepthCameraModel kRealCamera{385.0, 386.0, 320.5, 239.0};
 
 /// Depth of the scene at every pixel, with a share of pixels at random depths.
 DepthImage Render(const SolidScene& scene, const Pose& T_odom_camera, double noise = 0.0) {
@@ -24,7 +24,7 @@ DepthImage Render(const SolidScene& scene, const Pose& T_odom_camera, double noi
   image.height = 480;
   for (int row = 0; row < image.height; ++row) {
     for (int column = 0; column < image.width; ++column) {
-      const Vector3d ray((column - kCamera.cx) / kCamera.fx, (row - kCamera.cy) / kCamera.fy, 1.0);
+      const Vector3d ray((column - kRealCamera.cx) / kRealCamera.fx, (row - kRealCamera.cy) / kRealCamera.fy, 1.0);
       const double range =
           scene.Cast(T_odom_camera.translation(), T_odom_camera.linear() * ray.normalized());
       double depth = range / ray.norm();
@@ -45,7 +45,7 @@ TEST(DepthProjectionTest, PointsLieOnThePlanes) {
   scene.AddFloor(-1.0, 20.0);
   scene.AddBox({2.5, -3.0, 0.0}, {3.0, 3.0, 3.0});
   const Pose T_odom_camera = CameraPose(0.2, 0.5, 12.0);
-  const DepthCloud cloud = ProjectDepth(Render(scene, T_odom_camera), kCamera, DepthConfig{});
+  const DepthCloud cloud = ProjectDepth(Render(scene, T_odom_camera), kRealCamera, DepthConfig{});
   EXPECT_FALSE(cloud.report.refused);
   ASSERT_GT(cloud.points.size(), 10000U);
   std::size_t on_floor = 0;
@@ -68,7 +68,7 @@ TEST(DepthProjectionTest, DecimationTakesOnePointATile) {
     config.decimation = decimation;
     const auto tiles = static_cast<std::size_t>(((640 + decimation - 1) / decimation) *
                                                 ((480 + decimation - 1) / decimation));
-    EXPECT_EQ(ProjectDepth(image, kCamera, config).points.size(), tiles);
+    EXPECT_EQ(ProjectDepth(image, kRealCamera, config).points.size(), tiles);
   }
 }
 
@@ -87,7 +87,7 @@ TEST_P(ThinPost, StaysAndFlyingPixelsGo) {
     ++rims;
   }
   ASSERT_GT(rims, 150U);
-  const DepthCloud cloud = ProjectDepth(image, kCamera, DepthConfig{});
+  const DepthCloud cloud = ProjectDepth(image, kRealCamera, DepthConfig{});
   EXPECT_GE(cloud.report.flying, rims * 9 / 10);
   std::size_t on_post = 0;
   std::size_t in_between = 0;
@@ -105,7 +105,7 @@ TEST(DepthProjectionTest, SpecklesGo) {
   SolidScene scene;
   scene.AddBox({3.8, -9.0, -9.0}, {4.5, 9.0, 9.0});
   const DepthCloud cloud =
-      ProjectDepth(Render(scene, CameraPose(0.0, 0.5, 0.0), 0.01), kCamera, DepthConfig{});
+      ProjectDepth(Render(scene, CameraPose(0.0, 0.5, 0.0), 0.01), kRealCamera, DepthConfig{});
   EXPECT_GT(cloud.points.size(), 19000U);
   for (const Point& point : cloud.points) EXPECT_NEAR(point.z, 3.8, 0.11);
 }
@@ -114,7 +114,7 @@ TEST(DepthProjectionTest, RangesAreLimited) {
   SolidScene scene;
   scene.AddFloor(-1.0, 50.0);
   const DepthCloud cloud =
-      ProjectDepth(Render(scene, CameraPose(0.0, 0.5, 0.0)), kCamera, DepthConfig{});
+      ProjectDepth(Render(scene, CameraPose(0.0, 0.5, 0.0)), kRealCamera, DepthConfig{});
   EXPECT_GT(cloud.report.out_of_range, 1000U);
   EXPECT_GT(cloud.report.without_depth, 640U * 200U);
   for (const Point& point : cloud.points) EXPECT_LE(point.z, 4.0F);
@@ -128,23 +128,23 @@ TEST(DepthProjectionTest, BadImagesGiveNoPoints) {
     const DepthCloud cloud = ProjectDepth(image, camera, DepthConfig{});
     return cloud.report.refused && cloud.points.empty();
   };
-  EXPECT_FALSE(refused(good, kCamera));
-  EXPECT_TRUE(refused({}, kCamera));
+  EXPECT_FALSE(refused(good, kRealCamera));
+  EXPECT_TRUE(refused({}, kRealCamera));
   DepthImage bad = good;
   bad.depth_mm.pop_back();
-  EXPECT_TRUE(refused(bad, kCamera));
+  EXPECT_TRUE(refused(bad, kRealCamera));
   bad = good;
   bad.width = -640;
   bad.height = -480;
-  EXPECT_TRUE(refused(bad, kCamera));
-  DepthCameraModel model = kCamera;
+  EXPECT_TRUE(refused(bad, kRealCamera));
+  DepthCameraModel model = kRealCamera;
   model.fx = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(refused(good, model));
   EXPECT_TRUE(refused(good, {}));
   bad = good;
   std::fill(bad.depth_mm.begin(), bad.depth_mm.end(), std::uint16_t{0});
-  EXPECT_FALSE(refused(bad, kCamera));
-  EXPECT_TRUE(ProjectDepth(bad, kCamera, DepthConfig{}).points.empty());
+  EXPECT_FALSE(refused(bad, kRealCamera));
+  EXPECT_TRUE(ProjectDepth(bad, kRealCamera, DepthConfig{}).points.empty());
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace hv::navigation {
 namespace {
 
-ClearanceGrid Clearances(const OccupancyGrid& cells) {
+ClearanceGrid LocalClearances(const OccupancyGrid& cells) {
   return ClearanceGrid(cells, ClearanceGrid::Unknown::kOccupied, 2.0);
 }
 
@@ -77,7 +77,7 @@ struct Follower {
 class ClutteredRoom : public testing::TestWithParam<unsigned> {};
 
 TEST_P(ClutteredRoom, ReachesGoalsWithoutCollision) {
-  const ClearanceGrid grid = Clearances(RandomRoom(10.0, 18, 0.05, GetParam()));
+  const ClearanceGrid grid = LocalClearances(RandomRoom(10.0, 18, 0.05, GetParam()));
   const Footprint footprint;
   const double open_m = footprint.CircumscribedRadius() + 0.06;
   const auto pose = [&](unsigned seed) {
@@ -109,7 +109,7 @@ TEST_P(ClutteredRoom, ReachesGoalsWithoutCollision) {
 INSTANTIATE_TEST_SUITE_P(Seeds, ClutteredRoom, testing::Range(1U, 21U));
 
 TEST(LocalPlannerTest, IsFastWhereThereIsRoom) {
-  const ClearanceGrid grid = Clearances(Hall());
+  const ClearanceGrid grid = LocalClearances(Hall());
   Follower run({{1.0, 2.5}, 0.0});
   run.planner.SetPath(StraightPath(run.robot.pose(), 8.0));
   const double time_s = run.Until(LocalState::kReached, grid, 60.0);
@@ -118,7 +118,7 @@ TEST(LocalPlannerTest, IsFastWhereThereIsRoom) {
 }
 
 TEST(LocalPlannerTest, TurnsOnTheSpotWhenThePathBeginsBehind) {
-  const ClearanceGrid grid = Clearances(Hall());
+  const ClearanceGrid grid = LocalClearances(Hall());
   Follower run({{5.0, 2.5}, M_PI});
   run.planner.SetPath(StraightPath({{5.0, 2.5}, 0.0}, 3.0));
   while (std::abs(WrappedAngle(run.robot.pose().yaw)) > 0.9) {
@@ -137,13 +137,13 @@ OccupancyGrid HallWithPerson(double x) {
 }
 
 TEST(LocalPlannerTest, StopsBeforeWhatAppearsAndGoesOnAfterwards) {
-  const ClearanceGrid empty = Clearances(Hall());
+  const ClearanceGrid empty = LocalClearances(Hall());
   for (double gap_m = 1.1; gap_m < 3.0; gap_m += 0.15) {
     Follower run({{1.0, 2.5}, 0.0});
     run.planner.SetPath(StraightPath(run.robot.pose(), 8.0));
     while (run.robot.pose().position.x() < 3.0) run.Step(empty);
     ASSERT_GT(run.robot.velocity().linear_mps, 0.9);
-    const ClearanceGrid blocked = Clearances(HallWithPerson(3.0 + gap_m));
+    const ClearanceGrid blocked = LocalClearances(HallWithPerson(3.0 + gap_m));
     run.Until(LocalState::kBlocked, blocked, 10.0);
     EXPECT_EQ(run.plan.state, LocalState::kBlocked);
     for (int i = 0; i < 30; ++i) run.Step(blocked);
@@ -167,7 +167,7 @@ TEST(LocalPlannerTest, LetsAPersonCross) {
       OccupancyGrid cells = Hall();
       const double y = std::min(4.5, 0.2 + std::max(0.0, time_s - begin_s));
       FillCells(cells, {4.0, y - 0.2}, {4.4, y + 0.2});
-      run.Step(Clearances(cells));
+      run.Step(LocalClearances(cells));
       const bool near = run.robot.pose().position.x() > 2.5 && run.robot.pose().position.x() < 4.0;
       if (near) slowest_mps = std::min(slowest_mps, run.robot.velocity().linear_mps);
     }
@@ -218,7 +218,7 @@ Encounter Meet(const PersonInHall& person) {
     const Eigen::Vector2d at = person.At(result.time_s);
     OccupancyGrid cells = Hall();
     FillCells(cells, at - Eigen::Vector2d(0.2, 0.2), at + Eigen::Vector2d(0.2, 0.2));
-    const ClearanceGrid grid = Clearances(cells);
+    const ClearanceGrid grid = LocalClearances(cells);
     const Time now = Time::FromSeconds(100.0 + result.time_s);
     const Walkers walkers(walk, {person.NoticedAt(result.time_s, now)});
     run.Step({grid, &walkers, now});
@@ -277,7 +277,7 @@ TEST(LocalPlannerTest, GoesOnWhenSomebodyWalksAway) {
 }
 
 TEST(LocalPlannerTest, WhoStandsLetsThoseNearbyGoFirst) {
-  const ClearanceGrid grid = Clearances(Hall());
+  const ClearanceGrid grid = LocalClearances(Hall());
   const Time now = Time::FromSeconds(100.0);
   const PlanarPose pose{{3.0, 2.5}, 0.0};
   // One metre beside the robot, and walking away from it.
@@ -293,7 +293,7 @@ TEST(LocalPlannerTest, PassesANarrowDoor) {
   OccupancyGrid cells = Hall();
   FillCells(cells, {4.9, 0.0}, {5.1, 2.1});
   FillCells(cells, {4.9, 2.9}, {5.1, 5.0});
-  const ClearanceGrid grid = Clearances(cells);
+  const ClearanceGrid grid = LocalClearances(cells);
   PlanRequest request;
   request.start = {{2.0, 1.0}, 2.0};
   request.goal = {{8.0, 1.0}, 0.0};
@@ -309,7 +309,7 @@ TEST(LocalPlannerTest, PassesANarrowDoor) {
 TEST(LocalPlannerTest, CreepsNoNearerToWhatItStandsTooNearTo) {
   OccupancyGrid cells = Hall();
   FillCells(cells, {5.0, 0.0}, {5.2, 5.0});
-  const ClearanceGrid grid = Clearances(cells);
+  const ClearanceGrid grid = LocalClearances(cells);
   const PlanarPose start{{5.0 - Footprint().front_m - 0.015, 2.5}, 0.0};
   Follower follower(start);
   follower.planner.SetPath(StraightPath(start, 2.0));
@@ -324,7 +324,7 @@ TEST(LocalPlannerTest, CreepsNoNearerToWhatItStandsTooNearTo) {
 TEST(LocalPlannerTest, GoesOnAlongAWallThatItStandsTooNearTo) {
   OccupancyGrid cells = Hall();
   FillCells(cells, {0.0, 3.0}, {10.0, 3.2});
-  const ClearanceGrid grid = Clearances(cells);
+  const ClearanceGrid grid = LocalClearances(cells);
   const PlanarPose start{{2.0, 3.0 - Footprint().half_width_m - 0.015}, 0.0};
   Follower follower(start);
   follower.planner.SetPath(StraightPath(start, 3.0));
@@ -334,7 +334,7 @@ TEST(LocalPlannerTest, GoesOnAlongAWallThatItStandsTooNearTo) {
 }
 
 TEST(LocalPlannerTest, StandsWithoutAPathAndInObstacles) {
-  const ClearanceGrid grid = Clearances(HallWithPerson(2.0));
+  const ClearanceGrid grid = LocalClearances(HallWithPerson(2.0));
   LocalPlanner planner({}, {}, Footprint());
   const Velocity moving{0.5, 0.2};
   LocalPlan plan = planner.Plan(grid, {{5.0, 2.5}, 0.0}, moving);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "hv_core/angles.h"
 #include "hv_core/memory.h"
 #include "pose_message.h"
 
@@ -9,8 +10,6 @@ namespace hv::relocalize {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
-
-constexpr double kDegrees = 180.0 / M_PI;
 
 /// Standard deviation of a block of a covariance.
 double Sigma(const Matrix6d& covariance, int first) {
@@ -70,7 +69,7 @@ void LocalizationHealth::DescribeLocalization(Status& status) {
   status.add("place of the base", lost ? "unknown" : PlaceOf(state.last.T_map_base));
   status.addf("sigma of the position [m]", "%.4f", lost ? 0.0 : Sigma(state.last.covariance, 0));
   status.addf("sigma of the rotation [deg]", "%.4f",
-              lost ? 0.0 : kDegrees * Sigma(state.last.covariance, 3));
+              lost ? 0.0 : kDegreesPerRadian * Sigma(state.last.covariance, 3));
   status.add("least certain", lost ? "everything" : WeakestOf(state.last.covariance));
   AddComparison(state.compared, status);
   status.addf("last comparison [ms]", "%.1f", state.comparison_ms);

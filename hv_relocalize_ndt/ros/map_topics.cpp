@@ -5,11 +5,10 @@
 
 #include "hv_core/map_folder.h"
 #include "hv_ros/conversions.h"
+#include "hv_ros/latched.h"
 
 namespace hv::relocalize {
 namespace {
-
-constexpr bool kLatched = true;
 
 std::vector<Point> Thinned(const std::vector<Eigen::Vector3f>& cloud, double voxel_m,
                            std::size_t max_points) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "hv_core/angles.h"
 #include "hv_core/pose_covariance.h"
 #include "hv_ros/conversions.h"
 
@@ -22,7 +23,6 @@ geometry_msgs::PoseWithCovarianceStamped ToPoseWithCovariance(const Localization
 PoseGuess GuessFrom(const geometry_msgs::PoseWithCovariance& message,
                     const RelocalizeConfig& least) {
   constexpr double kSigmas = 3.0;
-  constexpr double kRadians = M_PI / 180.0;
   const auto reach = [&](int row) {
     const double variance = message.covariance[static_cast<std::size_t>(7 * row)];
     return variance > 0.0 ? kSigmas * std::sqrt(variance) : 0.0;
@@ -30,7 +30,8 @@ PoseGuess GuessFrom(const geometry_msgs::PoseWithCovariance& message,
   PoseGuess guess;
   guess.T_map_scan = FromRos(message.pose);
   guess.radius_m = std::max({least.guess_radius_m, reach(0), reach(1)});
-  guess.heading_rad = std::min(M_PI, std::max(least.guess_heading_deg * kRadians, reach(5)));
+  guess.heading_rad =
+      std::min(M_PI, std::max(least.guess_heading_deg * kRadiansPerDegree, reach(5)));
   return guess;
 }
 

@@ -5,16 +5,15 @@
 #include <cstdio>
 #include <limits>
 
+#include "hv_core/angles.h"
 #include "hv_relocalize_ndt/refinement.h"
 
 namespace hv::relocalize {
 namespace {
 
-constexpr double kRadians = M_PI / 180.0;
-
 bool SamePlace(const Pose& a, const Pose& b, const PoseSearchConfig& config) {
   return (a.translation() - b.translation()).norm() < config.same_place_m &&
-         RotationDistance(a, b) < config.same_heading_deg * kRadians;
+         RotationDistance(a, b) < config.same_heading_deg * kRadiansPerDegree;
 }
 
 double YawOf(const Eigen::Matrix3d& rotation) { return std::atan2(rotation(1, 0), rotation(0, 0)); }
@@ -64,7 +63,7 @@ PoseWindow GlobalLocalizer::WindowFor(const LocalizationQuery& query, const Scan
     window.high = guess.T_map_scan.translation() + reach;
     window.yaw_rad = YawOf(guess.T_map_scan.linear() * scan.R_level_scan.transpose());
     window.yaw_range_rad =
-        guess.heading_rad > 0.0 ? guess.heading_rad : config_.guess_heading_deg * kRadians;
+        guess.heading_rad > 0.0 ? guess.heading_rad : config_.guess_heading_deg * kRadiansPerDegree;
     return window;
   }
   const StructureGrid& grid = map_.structure();

@@ -3,12 +3,11 @@
 #include <cmath>
 #include <utility>
 
+#include "hv_core/angles.h"
 #include "hv_relocalize_ndt/refinement.h"
 
 namespace hv::relocalize {
 namespace {
-
-constexpr double kRadians = M_PI / 180.0;
 
 /// The scan in a frame with the axes of the IMU and the origin of the LiDAR, from which surfaces
 /// are seen.
@@ -186,7 +185,7 @@ void Localizer::GoOnWithoutMap() {
 /// Of an alignment, but never better than the best comparison is.
 Matrix6d Localizer::CovarianceOfComparison(const NdtResult& aligned) const {
   const TrackingConfig& tracking = config_.tracking;
-  const double least_rad = tracking.min_sigma_deg * kRadians;
+  const double least_rad = tracking.min_sigma_deg * kRadiansPerDegree;
   Matrix6d covariance = CovarianceOf(aligned, config_.relocalize.covariance_scale);
   covariance.topLeftCorner<3, 3>().diagonal().array() +=
       tracking.min_sigma_m * tracking.min_sigma_m;

@@ -4,12 +4,11 @@
 
 #include <Eigen/Cholesky>
 
+#include "hv_core/angles.h"
 #include "hv_core/so3.h"
 
 namespace hv::relocalize {
 namespace {
-
-constexpr double kRadians = M_PI / 180.0;
 
 Matrix6d Symmetric(const Matrix6d& matrix) { return 0.5 * (matrix + matrix.transpose()); }
 
@@ -32,8 +31,8 @@ void MapPoseFilter::Predict(const Pose& T_odom_imu, double seconds) {
   const double before_m = alone_m_;
   alone_m_ += step.translation().norm();
   const double grown = alone_m_ * alone_m_ - before_m * before_m;
-  const double heading = config_.drift_rotation_deg * kRadians;
-  const double tilt = config_.drift_tilt_deg * kRadians;
+  const double heading = config_.drift_rotation_deg * kRadiansPerDegree;
+  const double tilt = config_.drift_tilt_deg * kRadiansPerDegree;
   const double position = config_.drift_translation * config_.drift_translation * grown;
   const double waiting = config_.waiting_m * config_.waiting_m * std::abs(seconds);
   covariance_.topLeftCorner<3, 3>().diagonal().array() += position + waiting;
@@ -66,7 +65,7 @@ void MapPoseFilter::CorrectTilt() {
   const Eigen::Vector3d innovation = up_by_odometry - up_by_map;
   Eigen::Matrix<double, 3, 6> H = Eigen::Matrix<double, 3, 6>::Zero();
   H.rightCols<3>() = so3::Hat(up_by_map);
-  const double sigma = config_.tilt_sigma_deg * kRadians;
+  const double sigma = config_.tilt_sigma_deg * kRadiansPerDegree;
   const Eigen::Matrix3d noise = sigma * sigma * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d expected = H * covariance_ * H.transpose() + noise;
   const Eigen::Matrix<double, 6, 3> gain = expected.ldlt().solve(H * covariance_).transpose();

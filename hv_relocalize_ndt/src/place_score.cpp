@@ -7,7 +7,7 @@ namespace hv::relocalize {
 namespace {
 
 /// Cosine to the vertical beyond which a plane is floor or ceiling.
-constexpr float kLevelCosine = 0.8F;
+constexpr float kFlatCosine = 0.8F;
 /// Cosine between normals of one surface, at least.
 constexpr float kSameNormal = 0.85F;
 /// Squared Mahalanobis distance up to which a point belongs to what is no plane.
@@ -39,7 +39,7 @@ PlaceJudge::PlaceJudge(const PlaceScoreConfig& config, const NdtLevel& map_surfa
   const Eigen::Vector3f vertical = up.cast<float>();
   for (const NdtVoxel& voxel : scan_surfaces.voxels()) {
     if (voxel.mean.norm() > static_cast<float>(config.max_range_m)) continue;
-    const bool level = voxel.planar() && std::abs(voxel.normal.dot(vertical)) > kLevelCosine;
+    const bool level = voxel.planar() && std::abs(voxel.normal.dot(vertical)) > kFlatCosine;
     if (!level) upright_.push_back(voxel);
   }
 }

@@ -8,13 +8,14 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "hv_core/angles.h"
+
 namespace hv::relocalize {
 namespace {
 
 /// Nodes opened at once, and rated by one thread at least.
 constexpr std::size_t kBatch = 64;
-constexpr std::size_t kGrain = 32;
-constexpr double kDegrees = 180.0 / M_PI;
+constexpr std::size_t kPoseGrain = 32;
 
 /// The scan at one heading, as cubes relative to that of the sensor.
 struct TurnedScan {
@@ -160,7 +161,7 @@ class Search {
 
   /// Fills in the bounds.
   void Rate(std::vector<Node>& nodes, double least) const {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), kGrain),
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, nodes.size(), kPoseGrain),
                       [&](const tbb::blocked_range<std::size_t>& range) {
                         for (std::size_t i = range.begin(); i < range.end(); ++i) {
                           nodes[i].bound = Bound(nodes[i], static_cast<float>(least));
@@ -215,7 +216,7 @@ class Search {
     return std::any_of(found.begin(), found.end(), [&](const PoseHypothesis& other) {
       return (one.T_map_level.translation() - other.T_map_level.translation()).norm() <
                  config_.same_place_m &&
-             RotationDistance(one.T_map_level, other.T_map_level) * kDegrees <
+             RotationDistance(one.T_map_level, other.T_map_level) * kDegreesPerRadian <
                  config_.same_heading_deg;
     });
   }

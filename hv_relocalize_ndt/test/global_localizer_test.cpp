@@ -40,7 +40,7 @@ class GlobalLocalizerTest : public testing::Test {
     EXPECT_TRUE(result.localized) << result.reason;
     EXPECT_EQ(result.reason, "");
     EXPECT_LT((result.T_map_scan.translation() - truth.translation()).norm(), 0.03);
-    EXPECT_LT(RotationDistance(result.T_map_scan, truth), 0.3 * kDegree);
+    EXPECT_LT(RotationDistance(result.T_map_scan, truth), 0.3 * kRadiansPerDegree);
   }
   static void ExpectRefused(const LocalizationResult& result, const std::string& reason) {
     EXPECT_FALSE(result.localized);

@@ -7,11 +7,10 @@
 #include <Eigen/Core>
 
 #include "hall.h"
+#include "hv_core/angles.h"
 #include "hv_core/se3.h"
 
 namespace hv::relocalize {
-
-inline constexpr double kDegree = M_PI / 180.0;
 
 /// One scan of a hall with noise, in the frame of the sensor.
 inline std::vector<Eigen::Vector3f> ScanOf(const loop::Hall& hall, const Pose& T_hall_sensor,
@@ -33,7 +32,7 @@ inline Pose OnRing(double angle, double radius, double yaw, double roll = 0.0, d
 inline Pose RandomOnRing(std::mt19937& random) {
   std::uniform_real_distribution<double> angle(-M_PI, M_PI);
   std::uniform_real_distribution<double> radius(3.6, 5.0);
-  std::uniform_real_distribution<double> tilt(-3.0 * kDegree, 3.0 * kDegree);
+  std::uniform_real_distribution<double> tilt(-3.0 * kRadiansPerDegree, 3.0 * kRadiansPerDegree);
   const double place = angle(random);
   const double out = radius(random);
   const double yaw = angle(random);

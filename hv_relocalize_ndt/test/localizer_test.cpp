@@ -13,7 +13,7 @@
 namespace hv::relocalize {
 namespace {
 
-constexpr unsigned kHall = 7;
+constexpr unsigned kHallSeed = 7;
 constexpr double kStep_s = 0.5;
 
 /// A robot that drives around the ring of a hall, with odometry that drifts.
@@ -23,7 +23,7 @@ class Drive {
 
   Pose T_map_imu() const { return OnRing(angle_, 4.3, angle_ + 1.57, 0.01, -0.02); }
 
-  TrackedScan Next(unsigned hall = kHall) {
+  TrackedScan Next(unsigned hall = kHallSeed) {
     const Pose before = T_map_imu();
     angle_ += 0.06;
     const Pose drift = MakePose(RotationFromRpy(0.0, 0.0, 0.001), {0.003, 0.0, 0.0});
@@ -78,14 +78,14 @@ class LocalizerTest : public testing::Test {
   static void SetUpTestSuite() {
     std::mt19937 random(51);
     map_ =
-        std::make_unique<PriorMap>("hall", CloudOf(loop::Hall(kHall), random), RelocalizeConfig());
+        std::make_unique<PriorMap>("hall", CloudOf(loop::Hall(kHallSeed), random), RelocalizeConfig());
   }
   static void TearDownTestSuite() { map_.reset(); }
 
   static void ExpectAt(const LocalizerUpdate& update, const Pose& truth) {
     EXPECT_EQ(update.state, LocalizerState::kTracking) << update.reason;
     EXPECT_LT((update.T_map_imu.translation() - truth.translation()).norm(), 0.03);
-    EXPECT_LT(RotationDistance(update.T_map_imu, truth), 0.3 * kDegree);
+    EXPECT_LT(RotationDistance(update.T_map_imu, truth), 0.3 * kRadiansPerDegree);
   }
 
   static std::unique_ptr<PriorMap> map_;
@@ -189,7 +189,7 @@ TEST_F(LocalizerTest, PosesThatAreNowhereAreALoss) {
 
 TEST_F(LocalizerTest, AnotherHallIsNeverAPlaceInThisOne) {
   for (int i = 0; i < 5; ++i) {
-    const LocalizerUpdate update = localizer_.Add(drive_.Next(kHall + 1));
+    const LocalizerUpdate update = localizer_.Add(drive_.Next(kHallSeed + 1));
     EXPECT_EQ(update.state, LocalizerState::kLost);
     EXPECT_FALSE(update.reason.empty());
   }
@@ -199,7 +199,7 @@ TEST_F(LocalizerTest, AnotherHallIsNeverAPlaceInThisOne) {
 PriorMap PartOfTheHall(float from_x) {
   std::mt19937 random(9);
   std::vector<Eigen::Vector3f> part;
-  for (const Eigen::Vector3f& point : CloudOf(loop::Hall(kHall), random)) {
+  for (const Eigen::Vector3f& point : CloudOf(loop::Hall(kHallSeed), random)) {
     if (point.x() > from_x) part.push_back(point);
   }
   return PriorMap("part of the hall", part, RelocalizeConfig());
@@ -257,7 +257,7 @@ TEST_F(LocalizerTest, ScansThatShowTooLittleAloneAreLookedForTogether) {
   // What odometry put together is as exact as that.
   EXPECT_EQ(update.state, LocalizerState::kTracking) << update.reason;
   EXPECT_LT((update.T_map_imu.translation() - drive_.T_map_imu().translation()).norm(), 0.05);
-  EXPECT_LT(RotationDistance(update.T_map_imu, drive_.T_map_imu()), 1.0 * kDegree);
+  EXPECT_LT(RotationDistance(update.T_map_imu, drive_.T_map_imu()), 1.0 * kRadiansPerDegree);
 }
 
 TEST_F(LocalizerTest, EmptyScansAreTotal) {

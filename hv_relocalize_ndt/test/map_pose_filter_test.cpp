@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
+#include "hv_core/angles.h"
+
 namespace hv::relocalize {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 Matrix6d Diagonal(double sigma_m, double sigma_rad) {
   Vector6d variances;
@@ -98,13 +98,13 @@ TEST(MapPoseFilterTest, AnExactMeasurementIsTaken) {
 TEST(MapPoseFilterTest, GravityHoldsThePoseUpright) {
   const Pose T_odom_imu = MakePose(RotationFromRpy(0.1, -0.2, 0.7), {0.0, 0.0, 1.0});
   const Pose tilted =
-      MakePose(RotationFromRpy(5.0 * kDegree, 0.0, 0.0), {3.0, 4.0, 0.0}) * T_odom_imu;
+      MakePose(RotationFromRpy(5.0 * kRadiansPerDegree, 0.0, 0.0), {3.0, 4.0, 0.0}) * T_odom_imu;
   MapPoseFilter filter((TrackingConfig()));
   filter.Start(T_odom_imu, tilted, Diagonal(0.1, 0.2));
-  filter.Correct(tilted, Diagonal(0.05, 2.0 * kDegree));
+  filter.Correct(tilted, Diagonal(0.05, 2.0 * kRadiansPerDegree));
   const Eigen::Vector3d up_by_map = filter.T_map_imu().linear().row(2);
   const Eigen::Vector3d up = T_odom_imu.linear().row(2);
-  EXPECT_LT(std::acos(std::min(1.0, up.dot(up_by_map))), 0.3 * kDegree);
+  EXPECT_LT(std::acos(std::min(1.0, up.dot(up_by_map))), 0.3 * kRadiansPerDegree);
 }
 
 }  // namespace

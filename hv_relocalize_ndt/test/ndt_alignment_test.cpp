@@ -31,7 +31,7 @@ struct HallAtAllLevels {
     std::vector<const NdtLevel*> used;
     for (std::size_t i = first_level; i < levels.size(); ++i) used.push_back(&levels[i]);
     const double angle = 0.25 * M_PI * direction;
-    const double turn = (direction % 2 == 0 ? 1.0 : -1.0) * offset_deg * kDegree;
+    const double turn = (direction % 2 == 0 ? 1.0 : -1.0) * offset_deg * kRadiansPerDegree;
     const Pose offset = MakePose(RotationFromRpy(0.0, 0.0, turn),
                                  {offset_m * std::cos(angle), offset_m * std::sin(angle), 0.0});
     const NdtSource source(config, scan);
@@ -44,7 +44,7 @@ struct HallAtAllLevels {
     for (int direction = 0; direction < 8; ++direction) {
       const Pose pose = Align(first_level, offset_m, offset_deg, direction);
       const double error_m = (pose.translation() - truth.translation()).norm();
-      found += error_m < 0.02 && RotationDistance(pose, truth) < 0.2 * kDegree ? 1 : 0;
+      found += error_m < 0.02 && RotationDistance(pose, truth) < 0.2 * kRadiansPerDegree ? 1 : 0;
     }
     return found;
   }
@@ -135,10 +135,10 @@ TEST_P(OnAFloor, HeightAndTiltAreFound) {
                                 {2.0 * std::cos(a), 2.0 * std::sin(a), 1.25});
     const Pose pose = AlignTo(map, scan, guess, GetParam().resolutions_m).T_target_source;
     EXPECT_NEAR(pose.translation().z(), 1.0, 0.005);
-    EXPECT_LT(std::acos(pose.linear()(2, 2)), 0.05 * kDegree);
+    EXPECT_LT(std::acos(pose.linear()(2, 2)), 0.05 * kRadiansPerDegree);
     const Eigen::Vector3d shift = pose.translation() - guess.translation();
     EXPECT_LT(shift.head<2>().norm(), GetParam().shift_m);
-    EXPECT_LT(std::abs(YawBetween(guess, pose)), GetParam().yaw_deg * kDegree);
+    EXPECT_LT(std::abs(YawBetween(guess, pose)), GetParam().yaw_deg * kRadiansPerDegree);
   }
 }
 
@@ -188,7 +188,7 @@ TEST_P(InACorridor, AScanSlidesByLessThanASeventhOfAVoxel) {
         MakePose(RotationFromRpy(0.02, -0.02, 0.04), {resolution_m * i / 16.0, 0.3, 1.1});
     const Pose pose = AlignTo(map, scan, guess, {resolution_m}).T_target_source;
     EXPECT_NEAR(pose.translation().y(), 0.0, 0.005);
-    EXPECT_LT(RotationDistance(pose, Pose::Identity()), 0.15 * kDegree);
+    EXPECT_LT(RotationDistance(pose, Pose::Identity()), 0.15 * kRadiansPerDegree);
     const double slide_m = pose.translation().x() - guess.translation().x();
     EXPECT_LT(std::abs(slide_m), resolution_m / 7.0);
   }

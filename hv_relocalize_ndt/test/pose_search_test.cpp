@@ -108,7 +108,7 @@ TEST_F(PoseSearchTest, FindsThePlaceOfTheScan) {
   ASSERT_FALSE(found.empty());
   const Pose& best = found.front().T_map_level;
   EXPECT_LT((best.translation() - truth_.translation()).norm(), 1.8 * config_.cell_m);
-  EXPECT_LT(RotationDistance(best, truth_), 5.0 * kDegree);
+  EXPECT_LT(RotationDistance(best, truth_), 5.0 * kRadiansPerDegree);
 }
 
 TEST_F(PoseSearchTest, NoPoseScoresBetterThanTheBestHypothesis) {
@@ -147,7 +147,7 @@ TEST_F(PoseSearchTest, HypothesesAreDistinctAndBestFirst) {
       const Pose& a = found[i].T_map_level;
       const Pose& b = found[k].T_map_level;
       EXPECT_TRUE((a.translation() - b.translation()).norm() >= config_.same_place_m ||
-                  RotationDistance(a, b) >= config_.same_heading_deg * kDegree);
+                  RotationDistance(a, b) >= config_.same_heading_deg * kRadiansPerDegree);
     }
   }
 }

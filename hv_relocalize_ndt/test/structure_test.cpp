@@ -31,11 +31,11 @@ TEST_P(VerticalOfAHall, IsFoundFrom20DegreesOff) {
   const double around = M_PI / 4.0 * direction;
   const Eigen::Vector3d axis =
       UprightRotation(up).transpose() * Eigen::Vector3d(std::cos(around), std::sin(around), 0.0);
-  const Eigen::Vector3d guess = so3::Exp(20.0 * kDegree * axis) * up;
-  ASSERT_NEAR(AngleBetween(guess, up), 20.0 * kDegree, 1e-6);
+  const Eigen::Vector3d guess = so3::Exp(20.0 * kRadiansPerDegree * axis) * up;
+  ASSERT_NEAR(AngleBetween(guess, up), 20.0 * kRadiansPerDegree, 1e-6);
   const Eigen::Vector3d estimate = EstimateUp(scan, guess);
   EXPECT_NEAR(estimate.norm(), 1.0, 1e-9);
-  EXPECT_LT(AngleBetween(estimate, up), 0.3 * kDegree);
+  EXPECT_LT(AngleBetween(estimate, up), 0.3 * kRadiansPerDegree);
 }
 
 INSTANTIATE_TEST_SUITE_P(Directions, VerticalOfAHall, testing::Range(0, 8));
@@ -80,17 +80,18 @@ TEST(StructureBitsTest, AWallFitsItselfAtAnyYaw) {
   const Vector3f place(1.1F, 0.7F, 0.4F);
   for (int yaw_deg = -360; yaw_deg <= 360; ++yaw_deg) {
     for (const double seen_at_deg : {-170.0, -31.0, 0.0, 29.9, 89.0, 151.0}) {
-      const StructureCell seen = CellOf(PlaneVoxel(place, Horizontal(seen_at_deg * kDegree)));
+      const StructureCell seen =
+          CellOf(PlaneVoxel(place, Horizontal(seen_at_deg * kRadiansPerDegree)));
       ASSERT_TRUE(seen.wall && !seen.level);
-      const StructureBits fits = seen.Fits(static_cast<float>(yaw_deg * kDegree));
+      const StructureBits fits = seen.Fits(static_cast<float>(yaw_deg * kRadiansPerDegree));
       // Normals have no preferred side, and may err by a quarter of a step.
       for (const double apart_deg : {0.0, 180.0, 7.0, -7.0}) {
-        const double azimuth = (seen_at_deg + yaw_deg + apart_deg) * kDegree;
+        const double azimuth = (seen_at_deg + yaw_deg + apart_deg) * kRadiansPerDegree;
         EXPECT_NE(BitsOf(PlaneVoxel(place, Horizontal(azimuth))) & fits, 0)
             << yaw_deg << " deg, " << seen_at_deg << " deg, " << apart_deg << " deg";
       }
       for (const double apart_deg : {38.0, 60.0, 90.0, -60.0, -38.0}) {
-        const double azimuth = (seen_at_deg + yaw_deg + apart_deg) * kDegree;
+        const double azimuth = (seen_at_deg + yaw_deg + apart_deg) * kRadiansPerDegree;
         EXPECT_EQ(BitsOf(PlaneVoxel(place, Horizontal(azimuth))) & fits, 0)
             << yaw_deg << " deg, " << seen_at_deg << " deg, " << apart_deg << " deg";
       }

@@ -7,13 +7,13 @@
 
 #include <Eigen/Geometry>
 
+#include "hv_core/angles.h"
 #include "hv_core/so3.h"
 #include "hv_replay/console.h"
 
 namespace hv::replay {
 namespace {
 
-constexpr double kDegreesPerRadian = 57.295779513082320877;
 /// Correlation of rotations below which nothing is concluded from them.
 constexpr double kUsableCorrelation = 0.8;
 /// Offsets beyond this are worth correcting [s].

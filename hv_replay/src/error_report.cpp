@@ -3,12 +3,11 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "hv_core/angles.h"
 #include "hv_replay/console.h"
 
 namespace hv::replay {
 namespace {
-
-constexpr double kDegreesPerRadian = 57.295779513082320877;
 
 __attribute__((format(printf, 1, 2))) std::string Format(const char* format, ...) {
   char text[256];

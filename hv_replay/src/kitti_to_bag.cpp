@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 /// 2011-09-26 12:00 UTC: bags cannot hold stamps at zero, where KITTI's times begin.
 constexpr std::int64_t kEpochNs = 1317038400LL * 1000000000LL;
 constexpr double kPeriodS = 0.1;
-constexpr std::uint32_t kPointStep = 16;
+constexpr std::uint32_t kKittiPointStep = 16;
 
 /// One sequence: its scan files in order, with their stamps.
 struct Sequence {
@@ -90,15 +90,15 @@ sensor_msgs::PointCloud2 ToMessage(const std::vector<Point>& points, const ros::
   }
   cloud.width = static_cast<std::uint32_t>(points.size());
   cloud.height = 1;
-  cloud.point_step = kPointStep;
-  cloud.row_step = kPointStep * cloud.width;
+  cloud.point_step = kKittiPointStep;
+  cloud.row_step = kKittiPointStep * cloud.width;
   cloud.is_dense = true;
   cloud.data.resize(cloud.row_step);
   std::uint8_t* bytes = cloud.data.data();
   for (const Point& point : points) {
     const float values[4] = {point.x, point.y, point.z, point.intensity};
     std::memcpy(bytes, values, sizeof(values));
-    bytes += kPointStep;
+    bytes += kKittiPointStep;
   }
   return cloud;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "hv_core/angles.h"
 #include "hv_replay/map_picture.h"
 #include "hv_replay/result_files.h"
 #include "hv_replay/trajectory_error.h"
@@ -13,15 +14,13 @@
 namespace hv::replay {
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
-
 std::string RowOf(const relocalize::LocalizerUpdate& update, Time stamp, double elapsed_ms) {
   char text[256];
   std::snprintf(text, sizeof(text), ",%d,%d,%.4f,%.4f,%.4f,%.5f,%.5f,%.3f,%.3f,",
                 update.registered ? 1 : 0, update.searched ? 1 : 0, update.score.fit,
                 update.score.overlap, update.score.seen_through,
                 std::sqrt(update.covariance.topLeftCorner<3, 3>().trace()),
-                kDegrees * std::sqrt(update.covariance.bottomRightCorner<3, 3>().trace()),
+                kDegreesPerRadian * std::sqrt(update.covariance.bottomRightCorner<3, 3>().trace()),
                 update.innovation, elapsed_ms);
   return ToString(stamp) + "," + ToString(update.state) + text + update.reason;
 }

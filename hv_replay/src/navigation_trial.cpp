@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hv_replay/trajectory_error.h"
+#include "quantile.h"
 
 namespace hv::replay {
 namespace {
@@ -12,14 +13,6 @@ namespace {
 using Times = std::vector<double> NavigationTrial::*;
 
 constexpr double kPeriod_ms = 100.0;
-
-double Quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto nth =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), nth, values.end());
-  return *nth;
-}
 
 double Largest(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());

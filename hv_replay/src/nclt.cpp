@@ -6,13 +6,13 @@
 #include <cmath>
 #include <cstring>
 
+#include "hv_core/angles.h"
 #include "hv_core/error.h"
 
 namespace hv::replay::nclt {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kRadiansPerDegree = kPi / 180.0;
 constexpr std::size_t kHitSize = 8;
 constexpr std::size_t kHeaderSize = 24;
 constexpr std::uint16_t kMagic = 44444;

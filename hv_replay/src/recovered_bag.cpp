@@ -19,7 +19,7 @@ constexpr char kBagHeader = 0x03;
 constexpr char kChunk = 0x05;
 constexpr char kChunkInfo = 0x06;
 constexpr char kConnection = 0x07;
-constexpr char kMagic[] = "#ROSBAG V2.0\n";
+constexpr char kBagMagic[] = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kMaxHeader = 1U << 20;
 constexpr std::uint32_t kMaxChunk = 1U << 30;
 
@@ -99,9 +99,9 @@ class RecordFile {
   }
 
   bool StartsWithMagic() {
-    char magic[sizeof(kMagic) - 1] = {};
+    char magic[sizeof(kBagMagic) - 1] = {};
     left_ -= static_cast<std::streamoff>(sizeof(magic));
-    return file_.read(magic, sizeof(magic)) && std::memcmp(magic, kMagic, sizeof(magic)) == 0;
+    return file_.read(magic, sizeof(magic)) && std::memcmp(magic, kBagMagic, sizeof(magic)) == 0;
   }
 
   bool Seek(std::uint64_t position) {

@@ -10,6 +10,8 @@
 #include <set>
 #include <utility>
 
+#include "hv_core/angles.h"
+#include "hv_core/elapsed.h"
 #include "hv_core/error.h"
 #include "hv_core/map_folder.h"
 #include "hv_core/point_cloud_file.h"
@@ -23,15 +25,10 @@
 namespace hv::replay {
 namespace {
 
-constexpr double kRadians = M_PI / 180.0;
 constexpr double kSuccess_m = 0.10;
 constexpr double kSuccess_deg = 3.0;
 
 using Clock = std::chrono::steady_clock;
-
-double MillisecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 std::vector<Eigen::Vector3f> ReadPositions(const std::string& path) {
   std::vector<Eigen::Vector3f> points;
@@ -52,7 +49,7 @@ Eigen::Vector3d RandomDirection(std::mt19937& random) {
 /// The pose, moved and turned about itself by given amounts in random directions.
 Pose Perturbed(const Pose& pose, const RelocalizeTrials::Perturbation& by, std::mt19937& random) {
   const Eigen::Vector3d step = by.translation_m * RandomDirection(random);
-  const Eigen::AngleAxisd turn(by.rotation_deg * kRadians, RandomDirection(random));
+  const Eigen::AngleAxisd turn(by.rotation_deg * kRadiansPerDegree, RandomDirection(random));
   Pose moved = pose;
   moved.translation() += step;
   moved.linear() = pose.linear() * turn.toRotationMatrix();
@@ -196,7 +193,7 @@ class Trials {
     query.points = points;
     if (guess) {
       query.guess = relocalize::PoseGuess{*guess, trials_.guess_radius_m,
-                                          trials_.guess_heading_deg * kRadians};
+                                          trials_.guess_heading_deg * kRadiansPerDegree};
     }
     const relocalize::LocalizationResult result = localizer_.Locate(query);
     answer = {result.localized, result.reason, result.T_map_scan, result.covariance,
@@ -219,7 +216,7 @@ class Trials {
     double error_deg = -1.0;
     if (truth) {
       error_m = (answer.pose.translation() - truth->translation()).norm();
-      error_deg = RotationDistance(answer.pose, *truth) / kRadians;
+      error_deg = RotationDistance(answer.pose, *truth) / kRadiansPerDegree;
     }
     answered_ += answer.localized ? 1 : 0;
     if (answer.localized && truth && error_m < kSuccess_m && error_deg < kSuccess_deg) {
@@ -227,12 +224,13 @@ class Trials {
       in_sigmas_.push_back(ErrorInSigmas(answer, *truth));
     }
     char text[300];
-    std::snprintf(text, sizeof(text), ",%d,%.5f,%.5f,%.5f,%.5f,%.2f,%.4f,%.4f,%.4f,%.4f,%.2f,%s,",
-                  answer.localized ? 1 : 0, error_m, error_deg,
-                  std::sqrt(answer.covariance.topLeftCorner<3, 3>().trace()),
-                  std::sqrt(answer.covariance.bottomRightCorner<3, 3>().trace()) / kRadians, ms,
-                  answer.score.fit, answer.score.overlap, answer.score.seen_through, answer.margin,
-                  answer.lead, answer.origin.c_str());
+    std::snprintf(
+        text, sizeof(text), ",%d,%.5f,%.5f,%.5f,%.5f,%.2f,%.4f,%.4f,%.4f,%.4f,%.2f,%s,",
+        answer.localized ? 1 : 0, error_m, error_deg,
+        std::sqrt(answer.covariance.topLeftCorner<3, 3>().trace()),
+        std::sqrt(answer.covariance.bottomRightCorner<3, 3>().trace()) / kRadiansPerDegree, ms,
+        answer.score.fit, answer.score.overlap, answer.score.seen_through, answer.margin,
+        answer.lead, answer.origin.c_str());
     return std::filesystem::path(files_[number]).filename().string() + Row(truth) + Row(guess) +
            Row(answer.pose) + text + answer.reason;
   }

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "hv_core/angles.h"
 #include "hv_core/so3.h"
 #include "hv_core/trajectory.h"
 #include "hv_lio/pipeline.h"
@@ -14,11 +15,10 @@ namespace {
 constexpr int kMaxRefinements = 3;
 constexpr double kSettled = 0.001;
 /// Correlation of the first measurement below which refining makes no sense.
-constexpr double kUsableCorrelation = 0.6;
+constexpr double kComparableCorrelation = 0.6;
 /// The gyroscope only straightens clouds: the LiDAR shall decide about the rotation
 /// [rad/s/sqrt(Hz)].
 constexpr double kWeakGyroNoise = 0.05;
-constexpr double kDegreesPerRadian = 57.295779513082320877;
 
 /// Runs what waits and keeps the poses of tracked scans, stamped `shift` seconds later.
 void Drain(lio::Pipeline& pipeline, double shift, std::vector<StampedPose>& poses) {
@@ -96,7 +96,7 @@ std::optional<RotationMatch> MeasureRotation(const std::vector<Scan>& scans,
                                              const std::vector<ImuSample>& samples,
                                              const lio::LioConfig& config) {
   std::optional<RotationMatch> match = MatchRotations(StepsWithoutDeskew(scans, config), samples);
-  if (!match || match->correlation < kUsableCorrelation) return match;
+  if (!match || match->correlation < kComparableCorrelation) return match;
   for (int i = 0; i < kMaxRefinements; ++i) {
     const std::optional<RotationMatch> refined =
         MatchRotations(StepsWithGyro(scans, samples, *match, config), samples);

@@ -4,14 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "hv_core/elapsed.h"
+
 namespace hv::replay {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double MillisecondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
 
 navigation::DepthCameraModel ModelOf(const sim::DepthCameraConfig& camera) {
   return {camera.fx(), camera.fy(), camera.cx(), camera.cy()};

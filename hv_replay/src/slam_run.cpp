@@ -6,20 +6,13 @@
 #include "hv_core/memory.h"
 #include "hv_replay/plot.h"
 #include "hv_replay/result_files.h"
+#include "quantile.h"
 
 namespace hv::replay {
 namespace {
 
 /// Every n-th point of a scan goes into the picture of the map.
 constexpr std::size_t kPictureStride = 7;
-
-double Quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto index = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(index),
-                   values.end());
-  return values[index];
-}
 
 double Mean(const std::vector<double>& values) {
   double sum = 0.0;
@@ -49,7 +42,7 @@ std::string CovarianceRow(const lio::ScanResult& result) {
          std::to_string(result.update.degenerate_rotation.size());
 }
 
-JsonObject TimesJson(const std::vector<double>& milliseconds) {
+JsonObject SlamTimesJson(const std::vector<double>& milliseconds) {
   JsonObject times;
   times.Add("mean", Mean(milliseconds))
       .Add("median", Quantile(milliseconds, 0.5))
@@ -63,9 +56,9 @@ JsonObject LoopsJson(const LoopRunSummary& summary) {
   json.AddCount("keyframes", summary.keyframes)
       .AddCount("candidates", summary.candidates)
       .AddCount("accepted", summary.loops)
-      .Add("detect_ms", TimesJson(summary.detect_ms))
-      .Add("align_ms", TimesJson(summary.align_ms))
-      .Add("optimize_ms", TimesJson(summary.optimize_ms));
+      .Add("detect_ms", SlamTimesJson(summary.detect_ms))
+      .Add("align_ms", SlamTimesJson(summary.align_ms))
+      .Add("optimize_ms", SlamTimesJson(summary.optimize_ms));
   return json;
 }
 
@@ -148,7 +141,7 @@ JsonObject SummaryJson(const SlamRunSummary& summary) {
   json.Add("scans", statuses)
       .Add("path_length_m", summary.path_length_m)
       .AddCount("degenerate_scans", summary.degenerate_scans)
-      .Add("scan_ms", TimesJson(summary.total_ms))
+      .Add("scan_ms", SlamTimesJson(summary.total_ms))
       .Add("input", input)
       .Add("point_time", summary.odometry.time_layout)
       .Add("resident_mb", ResidentMegabytes())

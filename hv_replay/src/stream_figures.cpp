@@ -7,7 +7,7 @@ namespace hv::replay {
 namespace {
 
 /// Value below which `share` of `values` lie; 0 without values.
-double Quantile(std::vector<double> values, double share) {
+double NearestQuantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   const double index = share * static_cast<double>(values.size() - 1);
   const auto nth = values.begin() + static_cast<std::ptrdiff_t>(std::lround(index));
@@ -21,13 +21,13 @@ std::vector<double> QuietAccelerations(const std::vector<ImuSample>& samples) {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
     for (const ImuSample& sample : samples) values.push_back(sample.angular_velocity[axis]);
-    typical[axis] = Quantile(std::move(values), 0.5);
+    typical[axis] = NearestQuantile(std::move(values), 0.5);
   }
   std::vector<double> turning;
   for (const ImuSample& sample : samples) {
     turning.push_back((sample.angular_velocity - typical).norm());
   }
-  const double limit = Quantile(turning, 0.25);
+  const double limit = NearestQuantile(turning, 0.25);
   std::vector<double> norms;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (turning[i] <= limit) norms.push_back(samples[i].acceleration.norm());
@@ -64,8 +64,8 @@ StreamFigures SummarizeStream(const std::vector<Time>& stamps, const std::vector
     latencies.push_back(arrivals[i] - stamps[i]);
     if (i > 0) intervals.push_back(stamps[i] - stamps[i - 1]);
   }
-  figures.latency_s = Quantile(std::move(latencies), 0.5);
-  figures.median_interval_s = Quantile(intervals, 0.5);
+  figures.latency_s = NearestQuantile(std::move(latencies), 0.5);
+  figures.median_interval_s = NearestQuantile(intervals, 0.5);
   if (figures.median_interval_s > 0.0) figures.rate_hz = 1.0 / figures.median_interval_s;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     const double interval = intervals[i];
@@ -96,11 +96,11 @@ ImuFigures SummarizeImu(const std::vector<ImuSample>& samples) {
     }
   }
   if (usable.empty()) return figures;
-  figures.acceleration_norm = Quantile(QuietAccelerations(usable), 0.5);
+  figures.acceleration_norm = NearestQuantile(QuietAccelerations(usable), 0.5);
   const double norm = figures.acceleration_norm;
   figures.in_g = norm > 0.8 && norm < 1.25;
   figures.gravity_plausible = figures.in_g || (norm > 8.8 && norm < 10.8);
-  figures.gyro_peak = Quantile(std::move(rates), 0.999);
+  figures.gyro_peak = NearestQuantile(std::move(rates), 0.999);
   figures.starts_at_rest = StartsAtRest(usable, norm);
   return figures;
 }

@@ -5,12 +5,11 @@
 
 #include <Eigen/Geometry>
 
+#include "hv_core/angles.h"
 #include "hv_core/error.h"
 
 namespace hv::replay {
 namespace {
-
-constexpr double kDegreesPerRadian = 57.295779513082320877;
 
 /// Mean time between poses [s].
 double MeanInterval(const Trajectory& trajectory) {

@@ -15,7 +15,7 @@
 namespace hv::replay {
 namespace {
 
-constexpr double kStart = 1646310000.0;
+constexpr double kStart_s = 1646310000.0;
 constexpr int kScans = 90;
 
 Eigen::Matrix3d RotationImuLidar() { return RotationFromRpy(0.3, -0.2, 1.2); }
@@ -65,7 +65,7 @@ sensor_msgs::PointCloud2 CloudAt(double start, double stamp_offset) {
   constexpr int kColumns = 300;
   constexpr int kRings = 16;
   sensor_msgs::PointCloud2 cloud;
-  cloud.header.stamp.fromSec(kStart + start + stamp_offset);
+  cloud.header.stamp.fromSec(kStart_s + start + stamp_offset);
   cloud.header.frame_id = "lidar";
   cloud.fields = {Field("x", 0), Field("y", 4), Field("z", 8), Field("time", 12)};
   cloud.width = kColumns * kRings;
@@ -96,7 +96,7 @@ sensor_msgs::Imu ImuAt(double t, const Faults& faults) {
   const Eigen::Vector3d force =
       faults.accel_scale * (RotationWorldImu(t).transpose() * Eigen::Vector3d(0.0, 0.0, 9.81));
   sensor_msgs::Imu imu;
-  imu.header.stamp.fromSec(kStart + t);
+  imu.header.stamp.fromSec(kStart_s + t);
   imu.header.frame_id = "imu";
   imu.angular_velocity.x = rate.x();
   imu.angular_velocity.y = rate.y();
@@ -116,11 +116,11 @@ class BagCheckTest : public testing::Test {
     for (int i = 0; i < kScans * 20 + 40; ++i) {
       const double t = 0.005 * i;
       if (faults.imu_gap && t > 3.0 && t < 3.5) continue;
-      bag.write("/imu", ros::Time(kStart + t), ImuAt(t, faults));
+      bag.write("/imu", ros::Time(kStart_s + t), ImuAt(t, faults));
     }
     for (int i = 0; i < kScans; ++i) {
       const double t = 0.05 + 0.1 * i;
-      bag.write("/points", ros::Time(kStart + t + 0.1), CloudAt(t, -faults.lidar_offset_s));
+      bag.write("/points", ros::Time(kStart_s + t + 0.1), CloudAt(t, -faults.lidar_offset_s));
     }
     bag.close();
     BagReader reader({path_}, {}, ImuNeed::kOptional);
@@ -193,7 +193,7 @@ TEST_F(BagCheckTest, GapAndWrongExtrinsicAreReported) {
 TEST(StreamFigures, CountsDisorder) {
   std::vector<Time> stamps;
   for (const double t : {0.0, 0.1, 0.2, 0.15, 0.3, 0.3, 0.4, 0.9, 1.0}) {
-    stamps.push_back(Time::FromSeconds(kStart + t));
+    stamps.push_back(Time::FromSeconds(kStart_s + t));
   }
   std::vector<Time> arrivals;
   for (const Time& stamp : stamps) arrivals.push_back(stamp + 0.02);
@@ -212,7 +212,7 @@ TEST(StreamFigures, CountsDisorder) {
 TEST(ImuFigures, TellUnitsAndBadReadings) {
   std::vector<ImuSample> samples(400);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples[i].stamp = Time::FromSeconds(kStart + 0.005 * static_cast<double>(i));
+    samples[i].stamp = Time::FromSeconds(kStart_s + 0.005 * static_cast<double>(i));
     samples[i].acceleration = Eigen::Vector3d(0.0, 0.0, 1.0);
     samples[i].angular_velocity = Eigen::Vector3d(0.01, 0.0, 0.0);
   }

@@ -17,8 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPi = 3.14159265358979323846;
-constexpr std::uint64_t kStart = 1326030975000000;
+constexpr std::uint64_t kStart_us = 1326030975000000;
 constexpr int kPacketsPerSweep = 180;
 
 template <typename T>
@@ -44,8 +43,8 @@ std::string PacketBytes(std::uint64_t utime, const std::string& hits) {
 }
 
 double Elevation(int laser) {
-  return (laser % 2 == 0 ? -92.0 / 3.0 : -28.0 / 3.0) * kPi / 180.0 +
-         4.0 / 3.0 * (laser / 2) * kPi / 180.0;
+  return (laser % 2 == 0 ? -92.0 / 3.0 : -28.0 / 3.0) * M_PI / 180.0 +
+         4.0 / 3.0 * (laser / 2) * M_PI / 180.0;
 }
 
 /// Hits of one firing on a cylinder of 20 m around the sensor, in sensor axes.
@@ -67,9 +66,9 @@ std::string HitsFile(int sweeps) {
     std::string hits;
     for (int firing = 0; firing < 12; ++firing) {
       const double turns = (packet + firing / 12.0) / kPacketsPerSweep;
-      hits += FiringBytes(0.3 - 2.0 * kPi * turns);
+      hits += FiringBytes(0.3 - 2.0 * M_PI * turns);
     }
-    bytes += PacketBytes(kStart + static_cast<std::uint64_t>(packet) * 555, hits);
+    bytes += PacketBytes(kStart_us + static_cast<std::uint64_t>(packet) * 555, hits);
   }
   return bytes;
 }
@@ -88,7 +87,7 @@ class NcltSession : public testing::Test {
   void WriteImu(int samples) {
     std::string text;
     for (int i = 0; i < samples; ++i) {
-      text += std::to_string(kStart + static_cast<std::uint64_t>(i) * 20000) +
+      text += std::to_string(kStart_us + static_cast<std::uint64_t>(i) * 20000) +
               ",0.1,0.2,0.3,0.5,0.25,-9.8,0.01,0.02,0.03\n";
     }
     WriteFile("ms25.csv", text);
@@ -192,7 +191,7 @@ TEST_F(NcltSession, PacketsBecomeSweepsOfOneRevolution) {
 }
 
 TEST_F(NcltSession, ReaderSkipsDamageAndNotesTruncation) {
-  const std::string packet = PacketBytes(kStart, FiringBytes(0.0));
+  const std::string packet = PacketBytes(kStart_us, FiringBytes(0.0));
   WriteFile("a.bin", packet + "garbage" + packet + packet.substr(0, 100));
   HitsReader reader(Path("a.bin"));
   EXPECT_EQ(reader.Next()->hits.size(), 32U);
@@ -321,7 +320,7 @@ TEST_F(NcltSession, ConvertsToABagThatReadsBack) {
 TEST_F(NcltSession, SyncFilesGiveTimesFromAzimuth) {
   std::string hits;
   for (int firing = 0; firing < 1000; ++firing) {
-    hits += FiringBytes(1.0 - 2.0 * kPi * firing / 1000.0, 1.03);
+    hits += FiringBytes(1.0 - 2.0 * M_PI * firing / 1000.0, 1.03);
   }
   WriteFile("velodyne_sync/1326030975000000.bin", hits);
   WriteFile("velodyne_sync/1326030975100000.bin", hits + "abc");

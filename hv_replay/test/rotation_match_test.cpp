@@ -12,7 +12,7 @@
 namespace hv::replay {
 namespace {
 
-const Time kStart = Time::FromNanoseconds(1646310000000000000);
+const Time kEpoch = Time::FromNanoseconds(1646310000000000000);
 
 /// Angular velocity of the IMU at time t [rad/s]; `axes` of them move.
 Eigen::Vector3d RateAt(double t, int axes) {
@@ -36,7 +36,7 @@ struct Scene {
     std::normal_distribution<double> normal;
     for (int i = 0; i < 6000; ++i) {
       ImuSample sample;
-      sample.stamp = kStart + 0.005 * i + offset_s;
+      sample.stamp = kEpoch + 0.005 * i + offset_s;
       sample.angular_velocity =
           scale * (RateAt(0.005 * i, axes) + Eigen::Vector3d(0.01, -0.02, 0.03));
       gyro.push_back(sample);
@@ -47,7 +47,7 @@ struct Scene {
         turned = turned * so3::Exp(0.001 * RateAt(0.1 * i + 0.001 * (k + 0.5), axes));
       }
       const Eigen::Vector3d jitter(normal(random), normal(random), normal(random));
-      lidar.push_back({kStart + 0.1 * i, kStart + 0.1 * (i + 1),
+      lidar.push_back({kEpoch + 0.1 * i, kEpoch + 0.1 * (i + 1),
                        R_imu_lidar.transpose() * so3::Log(turned) + noise * jitter});
     }
   }

@@ -11,7 +11,6 @@
 namespace hv::replay {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr std::int64_t kStartNs = 1646310000000000000;
 
 /// A climbing helix of 10 m radius: 100 s at 10 Hz, about 126 m long.
@@ -100,7 +99,7 @@ TEST(TrajectoryError, YawRemovesYawAndTranslationOnly) {
   const TrajectoryError left =
       CompareTrajectories(Truth(), Transformed(tilted, Truth()), With(Alignment::kYaw));
   EXPECT_NEAR(left.vertical.max, 10.0 * std::sin(tilt), 0.02);
-  EXPECT_NEAR(left.rotation.mean, tilt * 180.0 / kPi, 0.02);
+  EXPECT_NEAR(left.rotation.mean, tilt * 180.0 / M_PI, 0.02);
 }
 
 TEST(TrajectoryError, NoneKeepsTheOffset) {
@@ -147,7 +146,7 @@ TEST(TrajectoryError, Se3AlignmentIsOptimal) {
 
 TEST(TrajectoryError, RotationErrorIsTheAngle) {
   Trajectory turned;
-  const double angle = 2.0 * kPi / 180.0;
+  const double angle = 2.0 * M_PI / 180.0;
   const Trajectory truth = Truth();
   for (const StampedPose& pose : truth.poses()) {
     turned.Append(pose.stamp,

@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "guess.h"
+#include "hv_core/angles.h"
 #include "hv_core/config.h"
 #include "hv_core/error.h"
 #include "hv_core/point_cloud_file.h"
@@ -20,11 +21,11 @@
 
 namespace {
 
+using hv::kDegreesPerRadian;
 using hv::relocalize::LocalizationResult;
 using hv::replay::JsonObject;
 
 constexpr int kNotLocalized = 3;
-constexpr double kDegrees = 180.0 / M_PI;
 
 struct Arguments {
   std::string map;
@@ -109,11 +110,12 @@ void PrintText(const Answer& answer) {
   const Eigen::Matrix<double, 6, 1> sigma = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   std::printf("  %s  x %.3f  y %.3f  z %.3f m   roll %.2f  pitch %.2f  yaw %.2f deg\n",
               result.localized ? "T_map_lidar " : "best guess  ", t.x(), t.y(), t.z(),
-              kDegrees * std::atan2(R(2, 1), R(2, 2)), -kDegrees * std::asin(R(2, 0)),
-              kDegrees * std::atan2(R(1, 0), R(0, 0)));
+              kDegreesPerRadian * std::atan2(R(2, 1), R(2, 2)),
+              -kDegreesPerRadian * std::asin(R(2, 0)),
+              kDegreesPerRadian * std::atan2(R(1, 0), R(0, 0)));
   std::printf("  sigma           %.3f    %.3f    %.3f m        %.2f        %.2f       %.2f deg\n",
-              sigma[0], sigma[1], sigma[2], kDegrees * sigma[3], kDegrees * sigma[4],
-              kDegrees * sigma[5]);
+              sigma[0], sigma[1], sigma[2], kDegreesPerRadian * sigma[3],
+              kDegreesPerRadian * sigma[4], kDegreesPerRadian * sigma[5]);
   const hv::WeakestDirection weakest = hv::WeakestDirectionOf(covariance);
   std::printf("  least certain   %.3f m along (%.2f, %.2f, %.2f)\n", weakest.sigma_m,
               weakest.axis.x(), weakest.axis.y(), weakest.axis.z());

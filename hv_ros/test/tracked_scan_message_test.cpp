@@ -8,7 +8,7 @@
 namespace hv {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 TrackedScanHeader ExampleHeader() {
   TrackedScanHeader header;
@@ -55,7 +55,7 @@ TEST(TrackedScanMessage, WithoutPointsIsAPrediction) {
 
 TEST(TrackedScanMessage, LeavesOutPointsThatAreNotFinite) {
   std::vector<Point> points = ExamplePoints();
-  points[0].y = static_cast<float>(kNan);
+  points[0].y = static_cast<float>(kNotANumber);
   EXPECT_EQ(FromMessage(*ToMessage(ExampleHeader(), points)).points.size(), 2U);
 }
 
@@ -65,9 +65,9 @@ TEST(TrackedScanMessage, SaysWhatIsWrong) {
     spoil(message);
     return FromMessage(message).error;
   };
-  EXPECT_NE(error_of([](auto& scan) { scan.pose.position.x = kNan; }), "");
+  EXPECT_NE(error_of([](auto& scan) { scan.pose.position.x = kNotANumber; }), "");
   EXPECT_NE(error_of([](auto& scan) { scan.base_pose.orientation.w = 2.0; }), "");
-  EXPECT_NE(error_of([](auto& scan) { scan.sensor_origin.z = kNan; }), "");
+  EXPECT_NE(error_of([](auto& scan) { scan.sensor_origin.z = kNotANumber; }), "");
   EXPECT_NE(error_of([](auto& scan) { scan.cloud.fields.clear(); }), "");
   EXPECT_NE(error_of([](auto& scan) { scan.cloud.data.resize(10); }), "");
   EXPECT_EQ(error_of([](auto&) {}), "");

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hv_core/angles.h"
 #include "hv_core/error.h"
 #include "hv_sim/random.h"
 
@@ -15,14 +16,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kMillimetre = 1e-3;
 constexpr double kLostCosine = 0.05;  ///< of a surface on which no pixel is matched
 constexpr double kSureCosine = 0.20;  ///< and of one on which none is lost
 constexpr double kJump = 0.1;         ///< between neighbours, share of the depth
 
 double FocalLength(int pixels, double fov_deg) {
-  return 0.5 * pixels / std::tan(0.5 * fov_deg * kDegree);
+  return 0.5 * pixels / std::tan(0.5 * fov_deg * kRadiansPerDegree);
 }
 
 std::uint16_t Quantised(double depth_m) {

@@ -1,12 +1,12 @@
 #include <array>
 #include <cmath>
 
+#include "hv_core/angles.h"
 #include "hv_sim/lidar.h"
 
 namespace hv::sim {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr int kChannels = 32;
 
 }  // namespace
@@ -21,12 +21,12 @@ Eigen::Vector3d LidarModel::Direction(int column, std::size_t channel) const {
 LidarModel PandarXt32() {
   LidarModel model;
   model.name = "pandar_xt32";
-  model.start_azimuth = 90.0 * kDegree;
+  model.start_azimuth = 90.0 * kRadiansPerDegree;
   for (int channel = 0; channel < kChannels; ++channel) {
-    model.elevation.push_back((15.0 - channel) * kDegree);
+    model.elevation.push_back((15.0 - channel) * kRadiansPerDegree);
     // Straight line through the calibration of a real unit: 0.09 to -0.13 degrees, and within
     // 0.011 degrees of each channel. It holds the turn during the column already.
-    model.azimuth_offset.push_back((0.0905 - 0.0071 * channel) * kDegree);
+    model.azimuth_offset.push_back((0.0905 - 0.0071 * channel) * kRadiansPerDegree);
     model.firing_delay.push_back((0.368 + 1.512 * channel) * 1e-6);
   }
   return model;
@@ -44,7 +44,7 @@ LidarModel Hdl32e() {
   for (int laser = 0; laser < kChannels; ++laser) {
     // The lower and the upper bank of 16 lasers, 4/3 degrees apart, take turns.
     const double lowest = laser % 2 == 0 ? -92.0 / 3.0 : -28.0 / 3.0;
-    model.elevation.push_back((lowest + 4.0 / 3.0 * (laser / 2)) * kDegree);
+    model.elevation.push_back((lowest + 4.0 / 3.0 * (laser / 2)) * kRadiansPerDegree);
     model.firing_delay.push_back(laser * kLaserPeriod);
     model.azimuth_offset.push_back(2.0 * M_PI * laser * kLaserPeriod / model.period());
   }

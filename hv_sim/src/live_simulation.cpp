@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hv_core/angles.h"
 #include "hv_core/error.h"
 #include "hv_sim/imu_simulator.h"
 #include "hv_sim/lidar.h"
@@ -12,8 +13,6 @@
 
 namespace hv::sim {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 LiveConfig Valid(LiveConfig config) {
   ConfigProblems problems;
@@ -80,7 +79,7 @@ struct LiveSimulation::Impl {
   Pose Start() const {
     if (config.start.empty()) return RandomStart(world, scene.scene(), config.robot, seed);
     const std::vector<double>& v = config.start;
-    return Upright({v[0], v[1], v[2]}, v[3] * kDegree);
+    return Upright({v[0], v[1], v[2]}, v[3] * kRadiansPerDegree);
   }
 
   double time_s() const { return static_cast<double>(step) / config.suite.imu.rate_hz; }

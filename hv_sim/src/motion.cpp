@@ -6,6 +6,7 @@
 #include <random>
 #include <utility>
 
+#include "hv_core/angles.h"
 #include "hv_core/error.h"
 #include "motion_jet.h"
 #include "motion_plan.h"
@@ -13,8 +14,6 @@
 
 namespace hv::sim {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 /// Sway relative to the planned path: offsets along the path's heading [m] and angles [rad].
 enum Sway { kForward, kLeft, kUp, kRoll, kPitchUp, kTurn, kSways };
@@ -32,18 +31,18 @@ struct Style {
   std::vector<Harmonic> harmonics;
 };
 
-Style Walk() {
+Style WalkStyle() {
   Style style;
   style.plan.idle_activity = 0.25;
   style.roll_deg = 1.5;
   style.pitch_deg = 3.0;
-  style.harmonics = {{kUp, 0.030, 1.8},   {kForward, 0.012, 1.8}, {kLeft, 0.025, 0.9},
-                     {kRoll, 2.5, 0.9},   {kRoll, 1.5, 0.23},     {kPitchUp, 1.5, 1.8},
-                     {kPitchUp, 3.0, 0.31}, {kTurn, 3.0, 0.9},    {kTurn, 7.0, 0.17}};
+  style.harmonics = {{kUp, 0.030, 1.8},     {kForward, 0.012, 1.8}, {kLeft, 0.025, 0.9},
+                     {kRoll, 2.5, 0.9},     {kRoll, 1.5, 0.23},     {kPitchUp, 1.5, 1.8},
+                     {kPitchUp, 3.0, 0.31}, {kTurn, 3.0, 0.9},      {kTurn, 7.0, 0.17}};
   return style;
 }
 
-Style Robot() {
+Style RobotStyle() {
   Style style;
   style.plan.speed = 0.8;
   style.plan.acceleration = 0.4;
@@ -52,8 +51,11 @@ Style Robot() {
   style.plan.step_s = 0.3;
   style.plan.stop_every = 35.0;
   style.plan.follows_slope = true;
-  style.harmonics = {{kUp, 0.0002, 11.0}, {kUp, 0.001, 2.6},  {kRoll, 0.15, 2.1},
-                     {kPitchUp, 0.2, 2.9}, {kPitchUp, 0.03, 13.0}};
+  style.harmonics = {{kUp, 0.0002, 11.0},
+                     {kUp, 0.001, 2.6},
+                     {kRoll, 0.15, 2.1},
+                     {kPitchUp, 0.2, 2.9},
+                     {kPitchUp, 0.03, 13.0}};
   return style;
 }
 
@@ -79,16 +81,16 @@ Style Aggressive() {
   style.plan.idle_activity = 0.6;
   style.roll_deg = -2.0;
   style.pitch_deg = 4.0;
-  style.harmonics = {{kUp, 0.045, 2.1},     {kUp, 0.004, 5.7},    {kForward, 0.02, 2.1},
-                     {kLeft, 0.035, 1.05},  {kLeft, 0.003, 6.3},  {kRoll, 11.0, 0.72},
-                     {kRoll, 2.0, 4.1},     {kPitchUp, 10.0, 0.6}, {kPitchUp, 1.5, 4.9},
-                     {kTurn, 21.0, 0.43},   {kTurn, 5.0, 1.4}};
+  style.harmonics = {{kUp, 0.045, 2.1},    {kUp, 0.004, 5.7},     {kForward, 0.02, 2.1},
+                     {kLeft, 0.035, 1.05}, {kLeft, 0.003, 6.3},   {kRoll, 11.0, 0.72},
+                     {kRoll, 2.0, 4.1},    {kPitchUp, 10.0, 0.6}, {kPitchUp, 1.5, 4.9},
+                     {kTurn, 21.0, 0.43},  {kTurn, 5.0, 1.4}};
   return style;
 }
 
 const std::map<std::string, Style (*)()>& Styles() {
   static const std::map<std::string, Style (*)()> kStyles = {
-      {"walk", Walk}, {"robot", Robot}, {"segway", Segway}, {"aggressive", Aggressive}};
+      {"walk", WalkStyle}, {"robot", RobotStyle}, {"segway", Segway}, {"aggressive", Aggressive}};
   return kStyles;
 }
 
@@ -102,7 +104,7 @@ class StyledMotion : public Motion {
     std::uniform_real_distribution<double> phase(0.0, 2.0 * M_PI);
     std::uniform_real_distribution<double> detune(0.95, 1.05);
     for (const Harmonic& harmonic : style.harmonics) {
-      const double unit = harmonic.sway >= kRoll ? kDegree : 1.0;
+      const double unit = harmonic.sway >= kRoll ? kRadiansPerDegree : 1.0;
       const double rate = 2.0 * M_PI * harmonic.frequency * detune(random);
       waves_.push_back({harmonic.sway, harmonic.amplitude * unit, rate, phase(random)});
     }
@@ -125,9 +127,10 @@ class StyledMotion : public Motion {
     SetTranslation(channel(kX) + cosine * sway[kForward] - sine * sway[kLeft],
                    channel(kY) + sine * sway[kForward] + cosine * sway[kLeft],
                    channel(kZ) + sway[kUp], state);
-    SetRotation(Jet{style_.roll_deg * kDegree, 0.0, 0.0} + sway[kRoll],
-                Jet{style_.pitch_deg * kDegree, 0.0, 0.0} + channel(kPitch) + sway[kPitchUp],
-                heading + sway[kTurn], state);
+    SetRotation(
+        Jet{style_.roll_deg * kRadiansPerDegree, 0.0, 0.0} + sway[kRoll],
+        Jet{style_.pitch_deg * kRadiansPerDegree, 0.0, 0.0} + channel(kPitch) + sway[kPitchUp],
+        heading + sway[kTurn], state);
     return state;
   }
 

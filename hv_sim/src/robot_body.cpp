@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "body_track.h"
+#include "hv_core/angles.h"
 #include "hv_core/error.h"
 #include "hv_sim/ground.h"
 #include "hv_sim/mesh_builder.h"
@@ -16,7 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kDegree = M_PI / 180.0;
 constexpr double kSkin_m = 0.003;       ///< gap that counts as touching
 constexpr double kReleased_m = 0.02;    ///< a contact ends this far from where it began
 constexpr double kReleased_rad = 0.15;  ///< or after this turn
@@ -32,9 +32,9 @@ struct Wave {
 std::vector<Wave> Vibration(double scale, std::uint32_t seed) {
   std::vector<Wave> waves = {{2, 0.0002, 11.0, 0.0},
                              {2, 0.001, 2.6, 0.0},
-                             {3, 0.15 * kDegree, 2.1, 0.0},
-                             {4, 0.2 * kDegree, 2.9, 0.0},
-                             {4, 0.03 * kDegree, 13.0, 0.0}};
+                             {3, 0.15 * kRadiansPerDegree, 2.1, 0.0},
+                             {4, 0.2 * kRadiansPerDegree, 2.9, 0.0},
+                             {4, 0.03 * kRadiansPerDegree, 13.0, 0.0}};
   Random random({seed, 0x71B2U});
   for (Wave& wave : waves) {
     wave.amplitude *= scale;

@@ -2,12 +2,11 @@
 
 #include <cmath>
 
+#include "hv_core/angles.h"
 #include "hv_core/error.h"
 
 namespace hv::sim {
 namespace {
-
-constexpr double kDegree = M_PI / 180.0;
 
 /// Frame of the Alphasense IMU, upside down under the LiDAR; BMI085 noise.
 SensorSuiteConfig Hilti() {
@@ -23,8 +22,8 @@ SensorSuiteConfig Nclt() {
   SensorSuiteConfig suite;
   suite.lidar = "hdl_32e";
   suite.epoch_s = 1326207600.0;
-  const Eigen::Quaterniond q(
-      RotationFromRpy(0.807 * kDegree, 0.166 * kDegree, -90.703 * kDegree));
+  const Eigen::Quaterniond q(RotationFromRpy(0.807 * kRadiansPerDegree, 0.166 * kRadiansPerDegree,
+                                             -90.703 * kRadiansPerDegree));
   suite.T_base_lidar = {0.002, -0.004, -0.957, q.x(), q.y(), q.z(), q.w()};
   suite.T_base_imu = {-0.11, -0.18, -0.71, 0.0, 0.0, 0.0, 1.0};
   suite.base_rpy_deg = {180.0, 0.0, 0.0};
@@ -96,8 +95,8 @@ SensorRig MakeRig(const SensorSuiteConfig& suite) {
   rig.T_base_imu = ToPose(suite.T_base_imu);
   rig.T_base_lidar = ToPose(suite.T_base_lidar);
   const std::vector<double>& rpy = suite.base_rpy_deg;
-  const Eigen::Matrix3d R_body_base =
-      RotationFromRpy(rpy[0] * kDegree, rpy[1] * kDegree, rpy[2] * kDegree);
+  const Eigen::Matrix3d R_body_base = RotationFromRpy(
+      rpy[0] * kRadiansPerDegree, rpy[1] * kRadiansPerDegree, rpy[2] * kRadiansPerDegree);
   const Eigen::Vector3d t_body_base = -(R_body_base * rig.T_base_lidar.translation());
   rig.T_body_base = MakePose(R_body_base, t_body_base);
   return rig;

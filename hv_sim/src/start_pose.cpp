@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 constexpr int kTries = 5000;
 constexpr double kBeside_m = 4.0;
-constexpr double kEye_m = 0.5;  ///< height from which places beside the route are looked at
+constexpr double kGlance_m = 0.5;  ///< height from which places beside the route are looked at
 constexpr double kFree_m = 0.15;
 constexpr double kFreeOfPeople_m = 1.0;
 
@@ -38,10 +38,10 @@ std::optional<Pose> PlaceBeside(const std::vector<Vector3d>& route, const RayCas
   const double angle = random.Uniform(-M_PI, M_PI);
   const double beside = random.Uniform(0.0, kBeside_m);
   const double yaw = random.Uniform(-M_PI, M_PI);
-  const Vector3d eye = route[index] + kEye_m * Vector3d::UnitZ();
+  const Vector3d eye = route[index] + kGlance_m * Vector3d::UnitZ();
   const Vector3d above = eye + beside * Vector3d(std::cos(angle), std::sin(angle), 0.0);
   if (!Sees(scene, eye, above)) return std::nullopt;
-  const auto floor = FloorBelow(scene, above, 2.0 * kEye_m);
+  const auto floor = FloorBelow(scene, above, 2.0 * kGlance_m);
   if (!floor) return std::nullopt;
   return Upright({above.x(), above.y(), *floor}, yaw);
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "hv_core/angles.h"
 #include "hv_sim/random.h"
 #include "hv_sim/ray_caster.h"
 #include "hv_sim/route.h"
@@ -11,7 +12,6 @@
 namespace hv::sim {
 namespace {
 
-constexpr double kRadians = M_PI / 180.0;
 constexpr int kTriesPerView = 400;
 /// Height above the route from which places beside it are looked at [m].
 constexpr double kEye_m = 1.0;
@@ -38,7 +38,7 @@ class Sampler {
     const double floor = above.z() - RangeOf(above, -Eigen::Vector3d::UnitZ());
     const double height = random_.Uniform(limits_.least_height_m, limits_.most_height_m);
     const Eigen::Vector3d place(above.x(), above.y(), floor + height);
-    const double tilt = limits_.tilt_deg * kRadians;
+    const double tilt = limits_.tilt_deg * kRadiansPerDegree;
     const Eigen::Matrix3d rotation = RotationFromRpy(
         random_.Uniform(-tilt, tilt), random_.Uniform(-tilt, tilt), random_.Uniform(-M_PI, M_PI));
     if (!(std::abs(floor - route_[index].z()) < 0.5) || !IsFree(place)) return {};

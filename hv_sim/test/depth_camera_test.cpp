@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-DepthCameraConfig Exact() {
+DepthCameraConfig ExactCamera() {
   DepthCameraConfig config;
   config.noise = false;
   return config;
@@ -41,7 +41,7 @@ Vector3d PointOf(const DepthImage& image, const DepthCameraConfig& config, int c
 
 TEST(DepthCameraTest, DepthOfAWallIsItsDistanceEverywhere) {
   for (const double distance : {0.5, 2.0, 7.5}) {
-    const DepthImage image = Capture(Exact(), Wall(distance));
+    const DepthImage image = Capture(ExactCamera(), Wall(distance));
     ASSERT_EQ(image.depth_mm.size(), 212U * 120U);
     for (const std::uint16_t depth : image.depth_mm) {
       ASSERT_EQ(depth, static_cast<std::uint16_t>(std::lround(1000.0 * distance)));
@@ -56,7 +56,7 @@ TEST(DepthCameraTest, PointsOfATiltedCameraLieOnThePlane) {
   MeshBuilder builder;
   builder.AddQuad(2.5 * normal - 30.0 * axes.col(0) - 30.0 * axes.col(1), 60.0 * axes.col(0),
                   60.0 * axes.col(1), 10.0);
-  const DepthCameraConfig config = Exact();
+  const DepthCameraConfig config = ExactCamera();
   const Pose T_world_camera = MakePose(RotationFromRpy(0.1, 0.2, 0.3), Vector3d(0.2, -0.1, 0.3));
   const DepthImage image = Capture(config, builder, T_world_camera);
   double worst = 0.0;
@@ -75,7 +75,7 @@ TEST(DepthCameraTest, PointsOfATiltedCameraLieOnThePlane) {
 
 TEST(DepthCameraTest, TheFieldOfViewIsThatOfTheCamera) {
   // A wall ends at the border of the view: the outermost pixels look half a pixel inside.
-  const DepthCameraConfig config = Exact();
+  const DepthCameraConfig config = ExactCamera();
   EXPECT_NEAR(std::atan((config.cx() + 0.5) / config.fx()) * 360.0 / M_PI, 87.0, 1e-9);
   EXPECT_NEAR(std::atan((config.cy() + 0.5) / config.fy()) * 360.0 / M_PI, 58.0, 1e-9);
   MeshBuilder left;
@@ -91,7 +91,7 @@ TEST(DepthCameraTest, TheFieldOfViewIsThatOfTheCamera) {
 
 TEST(DepthCameraTest, NothingIsSeenOutsideOfItsRange) {
   for (const double distance : {0.2, 10.5}) {
-    for (const std::uint16_t depth : Capture(Exact(), Wall(distance)).depth_mm) {
+    for (const std::uint16_t depth : Capture(ExactCamera(), Wall(distance)).depth_mm) {
       ASSERT_EQ(depth, 0);
     }
   }
@@ -120,7 +120,7 @@ TEST(DepthCameraTest, EdgesAndGrazedSurfacesHaveHoles) {
   builder.AddQuad({1.0, -0.5, -0.5}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0});
   const DepthCameraConfig config;
   const DepthImage image = Capture(config, builder);
-  const DepthImage exact = Capture(Exact(), builder);
+  const DepthImage exact = Capture(ExactCamera(), builder);
   int edges = 0;
   int lost_edges = 0;
   int lost_elsewhere = 0;
@@ -151,7 +151,7 @@ TEST(DepthCameraTest, PeopleAreSeenWhereTheyAre) {
   PersonPath path;
   path.waypoints = {{3.0, -10.0, -1.0}, {3.0, 10.0, -1.0}};
   path.speed = 1.0;
-  const DepthCamera camera(Exact(), 1);
+  const DepthCamera camera(ExactCamera(), 1);
   const RayCaster scene(Wall(6.0).mesh());
   const auto nearest_at = [&](double time_s) {
     const DepthImage image = camera.Capture(scene, {path}, Pose::Identity(), time_s);
@@ -176,7 +176,7 @@ TEST(DepthCameraTest, TheSeedDecidesWhateverTheNumberOfThreads) {
 
 TEST(DepthCameraTest, LowThingsAheadOfTheRobotAreInView) {
   // 0.15 m high, from 0.5 to 3 m ahead of the front of the robot.
-  const DepthCameraConfig config = Exact();
+  const DepthCameraConfig config = ExactCamera();
   const Pose T_base_camera = config.mounting();
   const double pitch_deg = std::asin(-T_base_camera.linear()(2, 0)) * 180.0 / M_PI;
   EXPECT_NEAR(pitch_deg, 17.5, 0.01);

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-World Loop() {
+World LoopWorld() {
   World world;
   world.name = "loop";
   world.route = {{0, 0, 0}, {9, 0, 0}, {9, 7, 0}, {5, 12, 0.5}, {-3, 9, 0}, {-3, 3, 0}};
@@ -26,7 +26,7 @@ TEST_P(ImuStyleTest, NoiseFreeReadingsIntegrateBackToTheTruth) {
   MotionConfig motion_config;
   motion_config.style = GetParam();
   motion_config.duration_s = 60.0;
-  const auto motion = MakeMotion(Loop(), motion_config);
+  const auto motion = MakeMotion(LoopWorld(), motion_config);
   ImuConfig imu_config;
   imu_config.noise = false;
   ImuSimulator imu(imu_config, 1);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "hv_core/angles.h"
 #include "hv_core/error.h"
 #include "hv_core/so3.h"
 #include "hv_sim/mesh_builder.h"
@@ -16,8 +17,6 @@ namespace hv::sim {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double kDegree = M_PI / 180.0;
 
 /// Fast and twisted: several rad/s and m/s with strong accelerations.
 Pose FastPose(double time) {
@@ -180,15 +179,15 @@ TEST(PandarXt32, MatchesARealUnit) {
   EXPECT_NEAR(model.period(), 0.1, 1e-9);
   const auto azimuth = [&model](int column, std::size_t channel) {
     const Vector3d direction = model.Direction(column, channel);
-    return std::atan2(direction.x(), direction.y()) / kDegree;
+    return std::atan2(direction.x(), direction.y()) / kRadiansPerDegree;
   };
   EXPECT_NEAR(azimuth(0, 0), 0.082, 0.02);
   EXPECT_NEAR(azimuth(0, 15), -0.015, 0.02);
   EXPECT_NEAR(azimuth(0, 31), -0.130, 0.02);
   EXPECT_NEAR(azimuth(100, 15) - azimuth(0, 15), 18.0, 1e-9);
-  EXPECT_NEAR(model.elevation[0] / kDegree, 14.97, 0.1);
-  EXPECT_NEAR(model.elevation[15] / kDegree, -0.05, 0.1);
-  EXPECT_NEAR(model.elevation[31] / kDegree, -16.02, 0.1);
+  EXPECT_NEAR(model.elevation[0] / kRadiansPerDegree, 14.97, 0.1);
+  EXPECT_NEAR(model.elevation[15] / kRadiansPerDegree, -0.05, 0.1);
+  EXPECT_NEAR(model.elevation[31] / kRadiansPerDegree, -16.02, 0.1);
 }
 
 TEST(PandarXt32, ChannelsFireOnTheDataSheetsTimes) {
@@ -202,12 +201,12 @@ TEST(PandarXt32, ChannelsFireOnTheDataSheetsTimes) {
 TEST(Hdl32e, FiresItsTwoBanksInTurn) {
   const LidarModel model = Hdl32e();
   // The first and last lasers of the manual's firing order, in degrees.
-  EXPECT_NEAR(model.elevation[0] / kDegree, -30.67, 0.01);
-  EXPECT_NEAR(model.elevation[1] / kDegree, -9.33, 0.01);
-  EXPECT_NEAR(model.elevation[2] / kDegree, -29.33, 0.01);
-  EXPECT_NEAR(model.elevation[15] / kDegree, 0.0, 0.01);
-  EXPECT_NEAR(model.elevation[30] / kDegree, -10.67, 0.01);
-  EXPECT_NEAR(model.elevation[31] / kDegree, 10.67, 0.01);
+  EXPECT_NEAR(model.elevation[0] / kRadiansPerDegree, -30.67, 0.01);
+  EXPECT_NEAR(model.elevation[1] / kRadiansPerDegree, -9.33, 0.01);
+  EXPECT_NEAR(model.elevation[2] / kRadiansPerDegree, -29.33, 0.01);
+  EXPECT_NEAR(model.elevation[15] / kRadiansPerDegree, 0.0, 0.01);
+  EXPECT_NEAR(model.elevation[30] / kRadiansPerDegree, -10.67, 0.01);
+  EXPECT_NEAR(model.elevation[31] / kRadiansPerDegree, 10.67, 0.01);
   EXPECT_NEAR(model.column_period, 46.08e-6, 1e-12);
   EXPECT_NEAR(model.period(), 0.1, 1e-4);
 }

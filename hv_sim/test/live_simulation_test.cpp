@@ -30,7 +30,7 @@ LiveConfig Small() {
   return config;
 }
 
-World Hall() { return BoxRoom(12.0F, 9.0F); }
+World EmptyHall() { return BoxRoom(12.0F, 9.0F); }
 
 /// Everything that a simulation has said, by kind.
 struct Log {
@@ -57,7 +57,7 @@ struct Log {
 double SecondsOf(Time stamp) { return stamp - Time::FromSeconds(kEpoch_s); }
 
 TEST(LiveSimulationTest, MessagesComeAtTheirRatesWithTheirStamps) {
-  LiveSimulation simulation(Hall(), Small());
+  LiveSimulation simulation(EmptyHall(), Small());
   Log log;
   log.Run(simulation, 2.0);
   ASSERT_EQ(log.imu.size(), 400U);
@@ -78,7 +78,7 @@ TEST(LiveSimulationTest, MessagesComeAtTheirRatesWithTheirStamps) {
 }
 
 TEST(LiveSimulationTest, EachStepEndsWithWhatIsCompleteByThen) {
-  LiveSimulation simulation(Hall(), Small());
+  LiveSimulation simulation(EmptyHall(), Small());
   for (int k = 0; k < 200; ++k) {
     bool imu_seen = false;
     simulation.Step([&](const LiveMessage& message) {
@@ -96,7 +96,7 @@ TEST(LiveSimulationTest, EachStepEndsWithWhatIsCompleteByThen) {
 TEST(LiveSimulationTest, AtRestTheImuFeelsGravityOnly) {
   LiveConfig config = Small();
   config.suite.imu.noise = false;
-  LiveSimulation simulation(Hall(), config);
+  LiveSimulation simulation(EmptyHall(), config);
   Log log;
   log.Run(simulation, 0.5);
   for (const ImuSample& sample : log.imu) {
@@ -121,9 +121,9 @@ TEST(LiveSimulationTest, UndistortedScansLieOnTheWalls) {
   LiveConfig config = Small();
   config.lidar_noise = false;
   config.truth_rate_hz = 200.0;
-  LiveSimulation simulation(Hall(), config);
+  LiveSimulation simulation(EmptyHall(), config);
   const Pose T_base_lidar = MakeRig(config.suite).T_base_lidar;
-  const RayCaster hall(Hall().mesh);
+  const RayCaster hall(EmptyHall().mesh);
   Log log;
   simulation.Command({0.8, 1.0});
   log.Run(simulation, 2.5);
@@ -147,7 +147,7 @@ TEST(LiveSimulationTest, UndistortedScansLieOnTheWalls) {
 TEST(LiveSimulationTest, DepthIsThatOfTheWallAhead) {
   LiveConfig config = Small();
   config.camera.noise = false;
-  LiveSimulation simulation(Hall(), config);
+  LiveSimulation simulation(EmptyHall(), config);
   Log log;
   log.Run(simulation, 0.1);
   // The view is pitched down by 17.5 degrees; the upper rows see the wall at x = 6 m.
@@ -160,7 +160,7 @@ TEST(LiveSimulationTest, DepthIsThatOfTheWallAhead) {
 /// Everything that differs when runs differ, as numbers.
 std::vector<double> Digest(const LiveConfig& config, std::size_t threads) {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-  LiveSimulation simulation(Hall(), config);
+  LiveSimulation simulation(EmptyHall(), config);
   Log log;
   simulation.Command({0.7, 0.4});
   log.Run(simulation, 0.6);
@@ -188,7 +188,7 @@ TEST(LiveSimulationTest, ARandomStartFollowsTheSeed) {
   config.start.clear();
   const auto start = [&](int seed) {
     config.seed = seed;
-    return LiveSimulation(Hall(), config).State().T_world_body.matrix();
+    return LiveSimulation(EmptyHall(), config).State().T_world_body.matrix();
   };
   EXPECT_EQ(start(1), start(1));
   EXPECT_NE(start(1), start(2));
@@ -214,7 +214,7 @@ int NearPixels(const DepthImage& image, int limit_mm) {
 TEST(LiveSimulationTest, ABoxIsThereInItsTimeForEverySensor) {
   LiveConfig config = Small();
   config.boxes = {3.0, 0.0, 0.75, 0.5, 1.0, 1.5, 1.0, 2.0};
-  LiveSimulation simulation(Hall(), config);
+  LiveSimulation simulation(EmptyHall(), config);
   Log log;
   log.Run(simulation, 3.0);
   const Vector3d low(2.65, -0.6, 0.1);
@@ -235,7 +235,7 @@ TEST(LiveSimulationTest, ABoxIsThereInItsTimeForEverySensor) {
 TEST(LiveSimulationTest, ABoxAddedOnTheWayStopsTheRobot) {
   LiveConfig config = Small();
   config.robot.drive.slip = 0.0;  // straight on
-  LiveSimulation simulation(Hall(), config);
+  LiveSimulation simulation(EmptyHall(), config);
   Log log;
   simulation.Command({0.5, 0.0});
   log.Run(simulation, 1.0);
@@ -254,7 +254,7 @@ TEST(LiveSimulationTest, LowThingsNearTheRobotAreSeenByTheCameraOnly) {
   LiveConfig config = Small();
   config.point_share = 0.3;
   config.boxes = {1.1, 0.0, 0.075, 0.2, 0.4, 0.15, 1.0, 100.0};
-  LiveSimulation simulation(Hall(), config);
+  LiveSimulation simulation(EmptyHall(), config);
   Log log;
   log.Run(simulation, 2.0);
   const Vector3d low(0.9, -0.3, 0.02);
@@ -265,7 +265,7 @@ TEST(LiveSimulationTest, LowThingsNearTheRobotAreSeenByTheCameraOnly) {
 }
 
 TEST(LiveSimulationTest, ResetGoesBackToTheStartWhileTimeGoesOn) {
-  LiveSimulation simulation(Hall(), Small());
+  LiveSimulation simulation(EmptyHall(), Small());
   Log log;
   simulation.Command({0.9, 0.3});
   log.Run(simulation, 2.0);
@@ -279,7 +279,7 @@ TEST(LiveSimulationTest, ResetGoesBackToTheStartWhileTimeGoesOn) {
 }
 
 TEST(LiveSimulationTest, CommandsThatAreNotFiniteAreIgnored) {
-  LiveSimulation simulation(Hall(), Small());
+  LiveSimulation simulation(EmptyHall(), Small());
   EXPECT_TRUE(simulation.Command({0.5, 0.0}));
   EXPECT_FALSE(simulation.Command({std::numeric_limits<double>::quiet_NaN(), 0.0}));
   Log log;
@@ -288,7 +288,7 @@ TEST(LiveSimulationTest, CommandsThatAreNotFiniteAreIgnored) {
 }
 
 TEST(LiveSimulationTest, WithoutPeopleNobodyIsMet) {
-  World world = Hall();
+  World world = EmptyHall();
   world.people = {{{{-5.0, 0.0, 0.0}, {5.0, 0.0, 0.0}}, 1.0, 2.0}};
   LiveConfig config = Small();
   Log with;
@@ -312,10 +312,10 @@ TEST(LiveSimulationTest, ConfigurationIsChecked) {
   ConfigProblems problems;
   config.Validate(problems);
   EXPECT_EQ(problems.lines().size(), 4U);
-  EXPECT_THROW(LiveSimulation(Hall(), config), InputError);
+  EXPECT_THROW(LiveSimulation(EmptyHall(), config), InputError);
   config = Small();
   config.start = {50.0, 0.0, 0.0, 0.0};
-  EXPECT_THROW(LiveSimulation(Hall(), config), InputError);
+  EXPECT_THROW(LiveSimulation(EmptyHall(), config), InputError);
 }
 
 TEST(LiveSimulationTest, ConfigurationSurvivesYaml) {

@@ -15,15 +15,15 @@ namespace {
 using Eigen::Vector3d;
 
 /// A closed way with level corners, a ramp and a dead end.
-World Loop() {
+World MotionLoop() {
   World world;
   world.name = "loop";
-  world.route = {{0, 0, 0}, {8, 0, 0}, {8, 6, 0},   {14, 6, 0}, {8, 6, 0},
-                 {8, 16, 1.5}, {0, 16, 1.5}, {0, 4, 0}};
+  world.route = {{0, 0, 0}, {8, 0, 0},    {8, 6, 0},    {14, 6, 0},
+                 {8, 6, 0}, {8, 16, 1.5}, {0, 16, 1.5}, {0, 4, 0}};
   return world;
 }
 
-World Hall() {
+World MotionHall() {
   World world;
   world.name = "hall";
   world.route = {{0, 0, 0}, {12, 0, 0}, {16, 4, 0}};
@@ -61,7 +61,7 @@ class StyleTest : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(StyleTest, DerivativesAgreeWithCentralDifferences) {
-  const auto motion = Make(Loop(), 60.0);
+  const auto motion = Make(MotionLoop(), 60.0);
   const double h = 1e-4;
   for (double t = 1.9; t < 59.0; t += 0.137) {
     const MotionState state = motion->At(t);
@@ -83,7 +83,7 @@ TEST_P(StyleTest, DerivativesAgreeWithCentralDifferences) {
 }
 
 TEST_P(StyleTest, StandsPerfectlyStillAtTheStart) {
-  const auto motion = Make(Loop(), 20.0);
+  const auto motion = Make(MotionLoop(), 20.0);
   const Pose start = motion->At(0.0).T_world_body;
   for (double t = 0.0; t <= 2.0; t += 0.05) {
     const MotionState state = motion->At(t);
@@ -96,7 +96,7 @@ TEST_P(StyleTest, StandsPerfectlyStillAtTheStart) {
 }
 
 TEST_P(StyleTest, FollowsTheRoute) {
-  for (World world : {Loop(), Hall()}) {
+  for (World world : {MotionLoop(), MotionHall()}) {
     const auto motion = Make(world, 90.0);
     for (Vector3d& waypoint : world.route) waypoint.z() = 0.0;
     double travelled = 0.0;
@@ -112,7 +112,7 @@ TEST_P(StyleTest, FollowsTheRoute) {
 }
 
 TEST_P(StyleTest, MovesWithoutJolts) {
-  const auto motion = Make(Loop(), 60.0);
+  const auto motion = Make(MotionLoop(), 60.0);
   MotionState last = motion->At(0.0);
   for (double t = 1e-3; t < 60.0; t += 1e-3) {
     const MotionState state = motion->At(t);
@@ -123,7 +123,7 @@ TEST_P(StyleTest, MovesWithoutJolts) {
 }
 
 TEST_P(StyleTest, LooksWhereItGoes) {
-  const auto motion = Make(Loop(), 60.0);
+  const auto motion = Make(MotionLoop(), 60.0);
   double along = 0.0;
   double all = 0.0;
   for (double t = 0.0; t < 60.0; t += 0.02) {
@@ -138,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(Styles, StyleTest, testing::ValuesIn(MotionStyles()),
                          [](const auto& test) { return test.param; });
 
 double PeakRotationRate(const std::string& style) {
-  const auto motion = MakeMotion(Loop(), Config(style, 60.0));
+  const auto motion = MakeMotion(MotionLoop(), Config(style, 60.0));
   double peak = 0.0;
   for (double t = 0.0; t < 60.0; t += 0.01) {
     peak = std::max(peak, motion->At(t).angular_velocity.norm());
@@ -154,7 +154,7 @@ TEST(MotionTest, StylesDifferInHowFastTheyTurn) {
 }
 
 TEST(MotionTest, RobotStopsNowAndThen) {
-  World world = Hall();
+  World world = MotionHall();
   world.route = {{0, 0, 0}, {200, 0, 0}};
   const auto motion = MakeMotion(world, Config("robot", 120.0));
   int stops = 0;
@@ -172,7 +172,7 @@ TEST(MotionTest, RobotStopsNowAndThen) {
 }
 
 TEST(MotionTest, AttachedFrameObeysItsOwnDerivatives) {
-  const auto motion = MakeMotion(Loop(), Config("aggressive", 30.0));
+  const auto motion = MakeMotion(MotionLoop(), Config("aggressive", 30.0));
   const Pose T_body_frame = MakePose(RotationFromRpy(0.3, -1.0, 2.0), Vector3d(0.4, -0.2, 0.3));
   const double h = 1e-4;
   for (double t = 3.0; t < 29.0; t += 0.31) {
@@ -191,19 +191,21 @@ TEST(MotionTest, AttachedFrameObeysItsOwnDerivatives) {
 
 TEST(MotionTest, SeedChangesTheSwayAndNothingElseDoes) {
   MotionConfig config = Config("walk", 20.0);
-  const Pose first = MakeMotion(Loop(), config)->At(10.0).T_world_body;
-  EXPECT_EQ((first.matrix() - MakeMotion(Loop(), config)->At(10.0).T_world_body.matrix()).norm(),
-            0.0);
+  const Pose first = MakeMotion(MotionLoop(), config)->At(10.0).T_world_body;
+  EXPECT_EQ(
+      (first.matrix() - MakeMotion(MotionLoop(), config)->At(10.0).T_world_body.matrix()).norm(),
+      0.0);
   config.seed = 2;
-  EXPECT_GT((first.matrix() - MakeMotion(Loop(), config)->At(10.0).T_world_body.matrix()).norm(),
-            1e-3);
+  EXPECT_GT(
+      (first.matrix() - MakeMotion(MotionLoop(), config)->At(10.0).T_world_body.matrix()).norm(),
+      1e-3);
 }
 
 TEST(MotionTest, CanStartInMotion) {
   MotionConfig config = Config("walk", 30.0);
-  const auto whole = MakeMotion(Loop(), config);
+  const auto whole = MakeMotion(MotionLoop(), config);
   config.skip_s = 10.0;
-  const auto later = MakeMotion(Loop(), config);
+  const auto later = MakeMotion(MotionLoop(), config);
   EXPECT_GT(later->At(0.0).velocity.norm(), 0.3);
   for (double t = 0.0; t < 20.0; t += 1.3) {
     const Pose expected = whole->At(t + 10.0).T_world_body;
@@ -212,8 +214,8 @@ TEST(MotionTest, CanStartInMotion) {
 }
 
 TEST(MotionTest, RefusesWhatItCannotDo) {
-  EXPECT_THROW(MakeMotion(Loop(), Config("fly", 10.0)), InputError);
-  World world = Loop();
+  EXPECT_THROW(MakeMotion(MotionLoop(), Config("fly", 10.0)), InputError);
+  World world = MotionLoop();
   world.route.resize(1);
   EXPECT_THROW(MakeMotion(world, Config("walk", 10.0)), InputError);
 }

@@ -19,7 +19,7 @@ constexpr double kSlope = 0.12;      ///< of the ramp, 2 m to 6 m ahead
 constexpr double kPeriod_s = 0.005;  ///< of the IMU
 
 /// A floor with a wall at x = 12 m, and on the left half a ramp up to a platform that ends at 9 m.
-MeshBuilder Hall() {
+MeshBuilder HallMesh() {
   const double height = 4.0 * kSlope;
   MeshBuilder builder;
   builder.AddQuad({-20.0, -20.0, 0.0}, {40.0, 0.0, 0.0}, {0.0, 20.0, 0.0}, 1.0);
@@ -41,7 +41,7 @@ RobotBodyConfig Plain() {
 struct Robot {
   explicit Robot(const RobotBodyConfig& config, const Pose& T_world_start,
                  std::vector<PersonPath> people = {}, std::uint32_t seed = 1)
-      : body(config, std::make_shared<RayCaster>(Hall().mesh()), std::move(people), seed) {
+      : body(config, std::make_shared<RayCaster>(HallMesh().mesh()), std::move(people), seed) {
     body.Place(T_world_start);
     Run(0.0);
   }
@@ -175,7 +175,7 @@ TEST(RobotBodyTest, SidewaysOnARampItRolls) {
 TEST(RobotBodyTest, StopsAtAWallAndReportsItOnce) {
   Robot robot(Plain(), Upright({10.0, -5.0, 0.0}, 0.3));
   robot.body.Command({0.8, 0.0});
-  const CollisionChecker checker({}, std::make_shared<RayCaster>(Hall().mesh()), {});
+  const CollisionChecker checker({}, std::make_shared<RayCaster>(HallMesh().mesh()), {});
   double least = 1.0;
   for (int k = 0; k < 1000; ++k) {
     robot.Run(kPeriod_s);

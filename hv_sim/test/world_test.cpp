@@ -22,7 +22,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-std::string ErrorOf(const std::string& world) {
+std::string WorldErrorOf(const std::string& world) {
   try {
     MakeWorld(world, 1);
   } catch (const InputError& error) {
@@ -149,8 +149,8 @@ TEST(World, StraightTunnelHidesItsEndsFromItsMiddle) {
 }
 
 TEST(World, UnknownNameNamesTheNearest) {
-  EXPECT_TRUE(Contains(ErrorOf("coridor"), "'corridor'")) << ErrorOf("coridor");
-  EXPECT_TRUE(Contains(ErrorOf("tunnel_strait"), "'tunnel_straight'"));
+  EXPECT_TRUE(Contains(WorldErrorOf("coridor"), "'corridor'")) << WorldErrorOf("coridor");
+  EXPECT_TRUE(Contains(WorldErrorOf("tunnel_strait"), "'tunnel_straight'"));
 }
 
 TEST(Route, RoundsCornersByArcsOfTheRadius) {
@@ -270,29 +270,29 @@ TEST_F(FloorPlanFile, ExtrudedPlanHasWallsWhereThePlanHasThem) {
 }
 
 TEST_F(FloorPlanFile, BadFilesAreNamedWithTheirFault) {
-  EXPECT_TRUE(Contains(ErrorOf((folder_ / "absent.yaml").string()), "absent.yaml"));
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml()), "plan.pgm: cannot be opened"));
+  EXPECT_TRUE(Contains(WorldErrorOf((folder_ / "absent.yaml").string()), "absent.yaml"));
+  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml()), "plan.pgm: cannot be opened"));
   Write("plan.pgm", Hall());
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml("resolution: 0.25\n", "")), "'resolution' is missing"));
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml("0.25", "fine")), "'resolution' has the wrong type"));
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml("0.25", "-1")), "resolution must be"));
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml("0.0]", "0.5]")), "origin must be"));
-  EXPECT_TRUE(Contains(ErrorOf(Write("list.yaml", "- 1\n- 2\n")), "not a map_server file"));
+  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml("resolution: 0.25\n", "")), "'resolution' is missing"));
+  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml("0.25", "fine")), "'resolution' has the wrong type"));
+  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml("0.25", "-1")), "resolution must be"));
+  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml("0.0]", "0.5]")), "origin must be"));
+  EXPECT_TRUE(Contains(WorldErrorOf(Write("list.yaml", "- 1\n- 2\n")), "not a map_server file"));
   Write("plan.pgm", Hall().substr(0, 600));
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml()), "cut short"));
+  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml()), "cut short"));
   Write("plan.pgm", "P6\n1 1\n255\nabc");
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml()), "not a PGM"));
+  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml()), "not a PGM"));
   Write("plan.pgm", "P5\n-3 2\n255\n");
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml()), "width and height"));
+  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml()), "width and height"));
   Write("plan.pgm", "P5\n1 1\n65535\nab");
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml()), "8-bit"));
+  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml()), "8-bit"));
   Write("plan.pgm", "P2\n2 1\n255\n7 x\n");
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml()), "pixel 1"));
+  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml()), "pixel 1"));
 }
 
 TEST_F(FloorPlanFile, RoomTooSmallForARobotIsRefused) {
   Write("plan.pgm", "P2\n4 4\n255\n0 0 0 0 0 254 254 0 0 254 254 0 0 0 0 0\n");
-  EXPECT_TRUE(Contains(ErrorOf(WriteYaml()), "0.15 m from all walls"));
+  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml()), "0.15 m from all walls"));
 }
 
 }  // namespace

@@ -14,6 +14,9 @@ std::string ReadFile(const std::string& path);
 /// never seen half written. Throws InputError and leaves `path` as it was when that fails.
 void WriteFile(const std::string& path, std::initializer_list<std::string_view> parts);
 
+/// False also where nobody may look.
+bool IsFolder(const std::string& path);
+
 /// Flushes a file or folder to the disk. Throws InputError.
 void SyncPath(const std::string& path);
 

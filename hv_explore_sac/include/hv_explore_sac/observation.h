@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <Eigen/Core>
@@ -35,6 +36,13 @@ struct Observation {
   static constexpr int kRobot = 0;
   int size() const { return static_cast<int>(nodes.size()); }
   const Node& node(int index) const { return nodes[static_cast<std::size_t>(index)]; }
+
+  /// The nearest node from which frontiers are seen; the robot's own where there is none.
+  int NearestWithUtility() const {
+    const auto found =
+        std::find_if(nodes.begin(), nodes.end(), [](const Node& node) { return node.utility > 0; });
+    return found == nodes.end() ? kRobot : static_cast<int>(found - nodes.begin());
+  }
 
   /// The edges of a node, by increasing length.
   struct EdgeRange {

@@ -19,7 +19,7 @@ using plot::Canvas;
 using plot::PixelRect;
 using plot::Range;
 
-constexpr int kWidth = 1000;
+constexpr int kPictureWidth = 1000;
 constexpr int kTop = 60;
 constexpr int kPanelHeight = 300;
 /// Room around the curves for ticks, title and legend [px].
@@ -112,11 +112,11 @@ std::vector<CurvePanel> ReadCurvePanels(const std::string& path) {
 
 void PlotCurves(const std::vector<CurvePanel>& panels, const std::string& title,
                 const std::string& path) {
-  Canvas canvas(kWidth, kTop + kPanelHeight * static_cast<int>(panels.size()), plot::kWhite);
+  Canvas canvas(kPictureWidth, kTop + kPanelHeight * static_cast<int>(panels.size()), plot::kWhite);
   canvas.Text({28.0, 40.0}, title, {22.0, plot::kTextColour, plot::TextAnchor::kLeft, true});
   double top = kTop;
   for (const CurvePanel& panel : panels) {
-    DrawPanel(canvas, panel, {kLeft, top + kAbove, kWidth - kRight, top + kPanelHeight - kBelow});
+    DrawPanel(canvas, panel, {kLeft, top + kAbove, kPictureWidth - kRight, top + kPanelHeight - kBelow});
     top += kPanelHeight;
   }
   canvas.Save(path);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kMaxWidth = 1600;
 constexpr int kMaxHeight = 1000;
-constexpr int kMargin = 30;
+constexpr int kBorder = 30;
 constexpr double kMaxCoordinate = 1e5;
 /// Share of columns cut off on each side of the picture as stray points.
 constexpr double kStrayShare = 0.002;
@@ -68,8 +68,8 @@ class MapPainter {
 
   cv::Mat Paint() const;
   plot::PixelPoint ToPixel(const Eigen::Vector3d& point) const {
-    return {kMargin + (point.x() / map_.cell_m_ - left_) * pixels_per_cell_,
-            kMargin + (top_ + 1.0 - point.y() / map_.cell_m_) * pixels_per_cell_};
+    return {kBorder + (point.x() / map_.cell_m_ - left_) * pixels_per_cell_,
+            kBorder + (top_ + 1.0 - point.y() / map_.cell_m_) * pixels_per_cell_};
   }
   double pixels_per_metre() const { return pixels_per_cell_ / map_.cell_m_; }
 
@@ -102,8 +102,8 @@ void MapPainter::FindBounds() {
   top_ = static_cast<int>(top + rim);
   columns_ = static_cast<int>(right + rim) - left_ + 1;
   rows_ = top_ - static_cast<int>(bottom - rim) + 1;
-  pixels_per_cell_ = std::min({static_cast<double>(kMaxWidth - 2 * kMargin) / columns_,
-                               static_cast<double>(kMaxHeight - 2 * kMargin) / rows_, 8.0});
+  pixels_per_cell_ = std::min({static_cast<double>(kMaxWidth - 2 * kBorder) / columns_,
+                               static_cast<double>(kMaxHeight - 2 * kBorder) / rows_, 8.0});
 }
 
 void MapPainter::FillGrids() {
@@ -149,7 +149,7 @@ cv::Mat MapPainter::Paint() const {
   const double up = std::max(1.0, pixels_per_cell_);
   cv::resize(picture, scaled, cv::Size(), up, up, cv::INTER_LINEAR);
   cv::Mat framed;
-  cv::copyMakeBorder(scaled, framed, kMargin, kMargin, kMargin, kMargin, cv::BORDER_CONSTANT,
+  cv::copyMakeBorder(scaled, framed, kBorder, kBorder, kBorder, kBorder, cv::BORDER_CONSTANT,
                      cv::Scalar(25, 16, 11));
   cv::Mat result;
   framed.convertTo(result, CV_8UC3);
