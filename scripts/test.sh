@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Sets up and builds HV-LIOM, then runs all its tests. Ends with 'N passed, N failed'; the exit
-# status is 0 only when every test passed. Arguments go to cmake.
+# status is 0 only when every test passed. Arguments go to cmake; HV_TESTS and HV_TESTS_LEFT_OUT are
+# regular expressions of test names.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -14,7 +15,8 @@ source "$build/devel/setup.bash"
 set -u
 rm -rf "$build/test_results"
 status=0
-ctest --test-dir "$build" --output-on-failure --no-tests=error -j1 2>&1 |
+ctest --test-dir "$build" --output-on-failure --no-tests=error -j "$(nproc)" \
+  -R "${HV_TESTS:-.}" -E "${HV_TESTS_LEFT_OUT:-^$}" 2>&1 |
   tee "$build/ctest.log" || status=$?
 
 # One ctest entry is a whole test program; count the single tests from their result files. Those of

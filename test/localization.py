@@ -1,4 +1,4 @@
-"""Odometry and localisation nodes under test, in the map that hv_slam makes of another recording."""
+"""Odometry and localisation nodes under test, in the map that hv_slam makes of another drive."""
 import atexit
 import os
 import signal
@@ -8,9 +8,10 @@ import numpy
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 
-from mapping import interrupt, poses_of, start_node
+from mapping import (
+    CONNECTING_S, interrupt, kill, poses_of, restart_odometry, start_node, start_odometry)
 from recording import (
-    CONFIG, DEVEL, HV_LIO_NODE, POINTS, TEST_DATA, Collector, Diagnostics, Player,
+    CONFIG, DEVEL, POINTS, TEST_DATA, Collector, Diagnostics, Player,
     odometry_collector, wait_until)
 
 HV_LOCALIZE = os.path.join(DEVEL, "lib", "hv_replay", "hv_localize")
@@ -22,6 +23,7 @@ MAP_TRUTH = os.path.join(TEST_DATA, "loop", "truth.tum")
 KIDNAPPED = os.path.join(TEST_DATA, "kidnapped", "recording.bag")
 KIDNAPPED_TRUTH = os.path.join(TEST_DATA, "kidnapped", "truth.tum")
 START = 12  # clouds without odometry, at most, until it has started
+START_IN_MOTION = 40
 CLOUDS_BEFORE = 145  # the last of them well before the kidnapping
 
 STATE = "localisation"  # name of the status in the diagnostics
@@ -111,6 +113,11 @@ class Places:
                 for message in self.messages}
 
 
+def start_localizer(*arguments):
+    return start_node(HV_RELOCALIZE_NDT_NODE, "hv_relocalize_ndt", "_config_file:=" + CONFIG,
+                      "_map:=" + MAP, *arguments)
+
+
 class Localization:
     """A fresh pair of nodes that localises the robot in a recording which the test plays."""
 
@@ -119,10 +126,19 @@ class Localization:
         self.odometry = odometry_collector()
         self.places = Places()
         self.player = Player(KIDNAPPED)
-        self._lio = start_node(HV_LIO_NODE, "hv_lio", "_config_file:=" + CONFIG)
-        self._localizer = start_node(HV_RELOCALIZE_NDT_NODE, "hv_relocalize_ndt",
-                                     "_config_file:=" + CONFIG, "_map:=" + MAP, *arguments)
+        self._lio = start_odometry()
+        self._localizer = start_localizer(*arguments)
         wait_for_nodes(self)
+
+    def restart_odometry(self):
+        self._lio = restart_odometry(self._lio)
+
+    def restart_localizer(self):
+        kill(self._localizer)
+        heard = Diagnostics()
+        self._localizer = start_localizer()
+        assert wait_until(lambda: heard.value(STATE, "state") != "")
+        rospy.rostime.wallsleep(CONNECTING_S)
 
     def value(self, key):
         return self.diagnostics.value(STATE, key)
@@ -130,9 +146,9 @@ class Localization:
     def count(self, key):
         return self.diagnostics.count(key, STATE)
 
-    def play(self, first, last=None):
+    def play(self, first, last=None, start=START):
         """Plays these clouds, and waits until all of them have been taken in."""
-        play_slowly(self, self.player.clouds(first, last))
+        play_slowly(self, self.player.clouds(first, last), start)
 
     def is_running(self):
         return self._localizer.poll() is None
@@ -174,7 +190,7 @@ def wait_for_nodes(nodes):
     assert wait_until(is_ready)
 
 
-def play_slowly(nodes, messages):
+def play_slowly(nodes, messages, start=START):
     """Plays with at most two clouds on their way, so that hardly any is dropped; returns when the
     last has been taken in."""
     def taken():
@@ -182,7 +198,7 @@ def play_slowly(nodes, messages):
     before = len(nodes.odometry)
     nodes.player.play(messages, taken, ahead=2)
     sent = sum(topic == POINTS for topic, _ in messages)
-    assert wait_until(lambda: len(nodes.odometry) - before > sent - START), len(nodes.odometry)
+    assert wait_until(lambda: len(nodes.odometry) - before > sent - start), len(nodes.odometry)
     count = ()
     while count != (len(nodes.odometry), len(nodes.places)):
         count = (len(nodes.odometry), len(nodes.places))

@@ -17,7 +17,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from localization import (  # noqa: E402
     CLOUDS_BEFORE, HV_RELOCALIZE_NDT_NODE, MAP, Launch, Localization)
 from mapping import start_node  # noqa: E402
-from recording import CONFIG, Collector, wait_until  # noqa: E402
+from recording import Collector, wait_until  # noqa: E402
 
 
 class LocalizationFaults(unittest.TestCase):

@@ -11,6 +11,7 @@ from recording import (
     odometry_collector, wait_until)
 from hv_msgs.msg import Keyframe
 
+CONNECTING_S = 1.5  # of a node whose predecessor nobody has missed yet
 LOOPS = "loop closing"  # name of the status in the diagnostics
 
 
@@ -30,6 +31,30 @@ def interrupt(process, name):
         rospy.delete_param("/" + name)
     assert process.returncode == 0, output
     return output
+
+
+def start_odometry():
+    return start_node(HV_LIO_NODE, "hv_lio", "_config_file:=" + CONFIG)
+
+
+def start_mapping(*arguments):
+    return start_node(HV_LOOP_BTC_NODE, "hv_loop_btc", "_config_file:=" + CONFIG, *arguments)
+
+
+def kill(process):
+    """At once, without a word."""
+    process.kill()
+    process.communicate(timeout=15)
+
+
+def restart_odometry(process):
+    """The process in the place of one that is killed; returns when it hears and is heard."""
+    kill(process)
+    heard = Diagnostics()
+    process = start_odometry()
+    assert wait_until(lambda: heard.value("input", "scans") == "0")
+    rospy.rostime.wallsleep(CONNECTING_S)
+    return process
 
 
 def is_ready(diagnostics):
@@ -59,9 +84,8 @@ class Mapping:
         self.odometry = odometry_collector()
         self.keyframes = Collector("/keyframe", Keyframe)
         self.player = Player(LOOP_RECORDING)
-        self._lio = start_node(HV_LIO_NODE, "hv_lio", "_config_file:=" + CONFIG)
-        self._loop = start_node(HV_LOOP_BTC_NODE, "hv_loop_btc", "_config_file:=" + CONFIG,
-                                *arguments)
+        self._lio = start_odometry()
+        self._loop = start_mapping(*arguments)
         assert self.player.wait_for_node()
         assert wait_until(self.odometry.connected) and wait_until(self.keyframes.connected)
         assert wait_until(lambda: is_ready(self.diagnostics))
@@ -77,6 +101,19 @@ class Mapping:
         self.player.play(messages, lambda: len(self.odometry))
         assert wait_until(lambda: len(self.odometry) - before > 0.75 * sent), len(self.odometry)
         settle(self.odometry, self.keyframes, self.diagnostics)
+
+    def restart_odometry(self):
+        self._lio = restart_odometry(self._lio)
+
+    def kill_mapping(self):
+        kill(self._loop)
+
+    def start_mapping(self, *arguments):
+        """After it was killed."""
+        heard = Diagnostics()
+        self._loop = start_mapping(*arguments)
+        assert wait_until(lambda: is_ready(heard))
+        rospy.rostime.wallsleep(CONNECTING_S)
 
     def is_running(self):
         return self._loop.poll() is None

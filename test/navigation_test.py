@@ -248,6 +248,8 @@ class Navigation(unittest.TestCase):
         self.assertEqual(self.diagnostics.count("goals reached", "navigation"), 2)
         self.assertGreater(self.diagnostics.count("octree nodes", "obstacles"), 1000)
         self.assertGreater(self.diagnostics.count("depth images", "obstacles"), 100)
+        self.assertGreater(float(self.diagnostics.value(
+            "navigation", "obstacles to velocity median [ms]")), 0.0)
         self.assertEqual(self.diagnostics.count("scans unusable", "obstacles"), 0)
 
 

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The odometry node on spoiled data: it says what is wrong and goes on."""
 import copy
+import math
 import os
 import struct
 import sys
@@ -13,6 +14,16 @@ from std_srvs.srv import SetBool, Trigger
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from recording import (  # noqa: E402
     IMU, POINTS, RECORDING, Diagnostics, Player, odometry_collector, shifted, wait_until)
+
+# How far the stamps of the whole recording are moved, each beyond those before [s].
+UNDISTURBED_S = 5000.0
+LOST_POINTS_S = 6000.0
+LOST_IMU_S = 7000.0
+MANY_POINTS_S = 8000.0
+
+
+def clouds_of(messages):
+    return [message for topic, message in messages if topic == POINTS]
 
 
 class OdometryFaults(unittest.TestCase):
@@ -151,7 +162,7 @@ class OdometryFaults(unittest.TestCase):
         before = self.odometry.messages[-1].pose.pose.position
         answer = rospy.ServiceProxy("/hv_lio/reset", Trigger)()
         self.assertTrue(answer.success, answer.message)
-        part = shifted(self.player.messages[:], 5000.0)
+        part = shifted(self.player.messages[:], UNDISTURBED_S)
         self.play(part)
         self.expect_count("resets", 1)
         self.expect_tracking_after(self.last_stamp(part) - 0.3)
@@ -159,6 +170,52 @@ class OdometryFaults(unittest.TestCase):
                      if message.header.stamp > part[0][1].header.stamp)
         self.assertAlmostEqual(first.pose.pose.position.x, before.x, delta=0.3)
         self.assertAlmostEqual(first.pose.pose.position.y, before.y, delta=0.3)
+
+    def test_11_points_are_lost_and_come_back(self):
+        part = shifted(self.player.clouds(0, 60), LOST_POINTS_S)
+        first, last = (clouds_of(part)[number].header.stamp for number in (30, 45))
+        self.play([(topic, message) for topic, message in part
+                   if topic == IMU or not first < message.header.stamp < last])
+        self.expect_tracking_after(self.last_stamp(part) - 0.3)
+        self.expect_the_way_of_undisturbed(LOST_POINTS_S, 20, 58)
+
+    def test_12_imu_is_lost_and_comes_back(self):
+        part = shifted(self.player.clouds(0, 70), LOST_IMU_S)
+        first, last = (clouds_of(part)[number].header.stamp for number in (30, 45))
+        gaps = self.diagnostics.count("imu gaps")
+        self.play([(topic, message) for topic, message in part
+                   if topic == POINTS or not first < message.header.stamp < last])
+        self.expect_count("imu gaps", gaps + 1)
+        self.expect_tracking_after(self.last_stamp(part) - 0.3)
+
+    def test_13_ten_times_the_points(self):
+        def repeat(cloud):
+            cloud.data = 10 * cloud.data
+            cloud.width *= 10
+            cloud.row_step *= 10
+        part = shifted(self.player.clouds(0, 60), MANY_POINTS_S)
+        for cloud in clouds_of(part)[15:]:
+            repeat(cloud)
+        self.play(part)
+        self.expect_tracking_after(self.last_stamp(part) - 0.3)
+        self.expect_the_way_of_undisturbed(MANY_POINTS_S, 20, 58)
+
+    def way(self, shift_s, start, end):
+        """How far the robot came between two clouds of a part that was played with shifted
+        stamps [m]."""
+        places = []
+        for cloud in (clouds_of(self.player.messages)[number] for number in (start, end)):
+            after = cloud.header.stamp.to_sec() + shift_s
+            stamp = min((message.header.stamp.to_sec() for message in self.odometry.messages
+                         if message.header.stamp.to_sec() > after))
+            places.append(next(message.pose.pose.position for message in self.odometry.messages
+                               if message.header.stamp.to_sec() == stamp))
+        return math.dist(*((place.x, place.y, place.z) for place in places))
+
+    def expect_the_way_of_undisturbed(self, shift_s, start, end):
+        expected = self.way(UNDISTURBED_S, start, end)
+        self.assertGreater(expected, 0.3)
+        self.assertAlmostEqual(self.way(shift_s, start, end), expected, delta=0.05)
 
 
 if __name__ == "__main__":

@@ -161,7 +161,6 @@ def shifted(messages, seconds):
 
 
 def _shift_point_times(cloud, seconds):
-    import struct
     offset = next(field.offset for field in cloud.fields if field.name == "timestamp")
     data = bytearray(cloud.data)
     for start in range(offset, len(data), cloud.point_step):

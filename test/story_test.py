@@ -3,7 +3,6 @@
 another place, finds out where it is and drives to a goal. With the launch file that users start."""
 import math
 import os
-import signal
 import subprocess
 import sys
 import tempfile
@@ -15,18 +14,20 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped
+from hv_msgs.msg import ExploreAction, ExploreGoal
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
-from nav_msgs.msg import Odometry
-from std_msgs.msg import String
+from nav_msgs.msg import OccupancyGrid
+from visualization_msgs.msg import MarkerArray
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from recording import DEVEL, Collector, Diagnostics, wait_until  # noqa: E402
+from recording import DEVEL, Collector, wait_until  # noqa: E402
+from whole_robot import IMU, Robot, place_of  # noqa: E402
 
 HV_MAP = os.path.join(DEVEL, "lib", "hv_replay", "hv_map")
 WORLD = os.path.join(rospkg.RosPack().get_path("hv_bringup"), "..", "test", "small_building.yaml")
 FIRST_START = (1.2, 1.3, 0.0)  # x, y [m], yaw [deg] in the building
 SECOND_START = (4.0, 7.4, 250.0)  # in a room
-IMU = (-0.06, 0.02)  # where the map begins, seen from the base at the first start [m]
+FREE_M2 = 75.0  # of the building, about
 WAITS = 25  # of half a minute each; reached only by a failure
 
 
@@ -34,42 +35,14 @@ def wait_long(condition):
     return any(wait_until(condition) for _ in range(WAITS))
 
 
-def place_of(pose):
-    return (pose.position.x, pose.position.y)
-
-
 def in_map(place):
     """Of a place in the building: the first start looks along its x axis."""
     return (place[0] - FIRST_START[0] - IMU[0], place[1] - FIRST_START[1] - IMU[1])
 
 
-class Robot:
-    """Everything of the robot, running."""
-
-    def __init__(self, folder, name, start, *arguments):
-        self.log = os.path.join(folder, name + ".log")
-        self._file = open(self.log, "w")
-        self._process = subprocess.Popen(
-            ["roslaunch", "hv_bringup", "hv_liom.launch", "sim:=true", "world:=" + WORLD,
-             "people:=false", "point_share:=0.1", "sim_rate:=0.5",
-             "start:=%g, %g, 0, %g" % start] + list(arguments),
-            stdout=self._file, stderr=subprocess.STDOUT)
-        self.truth = Collector("/truth/odometry", Odometry)
-        self.collisions = Collector("/collision", String)
-        self.poses = Collector("/localization_pose", PoseWithCovarianceStamped)
-        self.diagnostics = Diagnostics()
-
-    def here(self):
-        return place_of(self.truth.messages[-1].pose.pose)
-
-    def switch_off(self):
-        self._process.send_signal(signal.SIGINT)
-        self._process.wait(60)
-        self._file.close()
-
-    def output(self):
-        with open(self.log) as file:
-            return file.read()
+def switch_on(folder, name, start, *arguments):
+    return Robot(os.path.join(folder, name + ".log"), start, "world:=" + WORLD, "people:=false",
+                 "point_share:=0.1", "sim_rate:=0.5", *arguments)
 
 
 class Story(unittest.TestCase):
@@ -78,31 +51,41 @@ class Story(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
         cls.map = os.path.join(cls.folder.name, "map")
         cls.explore()
         cls.wake_up_elsewhere()
 
     @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
-
-    @classmethod
     def explore(cls):
-        robot = Robot(cls.folder.name, "exploration", FIRST_START, "mode:=exploration",
-                      "explore:=true", "save_map:=" + cls.map)
+        robot = switch_on(cls.folder.name, "exploration", FIRST_START, "mode:=exploration",
+                          "save_map:=" + cls.map)
+        cls.addClassCleanup(robot.switch_off)
         cls.explorer = robot
-        cls.explored = wait_long(
-            lambda: robot.diagnostics.value("exploration", "last result") not in ("", "none"))
-        cls.end_of_exploration = robot.diagnostics.value("exploration", "last result")
+        cls.viewpoints = Collector("/viewpoints", MarkerArray)
+        cls.maps = Collector("/map", OccupancyGrid)
+        cls.feedback = []
+        results = []
+        client = actionlib.SimpleActionClient("/hv_explore_sac/explore", ExploreAction)
+        assert client.wait_for_server(rospy.Duration(60))
+        client.send_goal(ExploreGoal(return_home=True), feedback_cb=cls.feedback.append,
+                         done_cb=lambda status, result: results.append((status, result)))
+        assert wait_long(lambda: results), robot.output()
+        cls.explored, cls.exploration = results[0]
+        cls.back_at = robot.here()
+        wait_until(lambda: robot.diagnostics.value("exploration", "last result")
+                   == cls.exploration.reason)
         robot.switch_off()
 
     @classmethod
     def wake_up_elsewhere(cls):
-        robot = Robot(cls.folder.name, "navigation", SECOND_START, "mode:=navigation",
-                      "map:=" + cls.map)
+        robot = switch_on(cls.folder.name, "navigation", SECOND_START, "mode:=navigation",
+                          "map:=" + cls.map)
+        cls.addClassCleanup(robot.switch_off)
         cls.driver = robot
-        cls.localized = wait_until(lambda: len(robot.poses) > 0 and len(robot.truth) > 0)
-        cls.found_at = place_of(robot.poses.messages[-1].pose.pose) if cls.localized else None
+        poses = Collector("/localization_pose", PoseWithCovarianceStamped)
+        cls.localized = wait_until(lambda: len(poses) > 0 and len(robot.truth) > 0)
+        cls.found_at = place_of(poses.messages[-1].pose.pose) if cls.localized else None
         cls.woke_up_at = robot.here()
         client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
         assert client.wait_for_server(rospy.Duration(60))
@@ -119,10 +102,27 @@ class Story(unittest.TestCase):
         robot.switch_off()
 
     def test_1_explores_all_of_it(self):
-        self.assertTrue(self.explored, self.explorer.output())
-        self.assertRegex(self.end_of_exploration,
-                         "explored: no frontiers are left|nothing is left that can be reached")
+        self.assertEqual(self.explored, GoalStatus.SUCCEEDED, self.explorer.output())
+        # The second may go on with what navigation said of the last goal.
+        self.assertRegex(self.exploration.reason, "^(explored: no frontiers are left$|"
+                                                  "nothing is left that can be reached($|; ))")
+        self.assertGreater(self.exploration.explored_m2, 0.9 * FREE_M2)
+        known = sum(cell == 0 for cell in self.maps.messages[-1].data)
+        self.assertGreater(0.01 * known, 0.9 * FREE_M2)
+        self.assertGreater(self.exploration.travelled_m, 10.0)
+        self.assertGreater(self.exploration.elapsed_s, 20.0)
+        self.assertLess(math.dist(self.back_at, FIRST_START[:2]), 0.4)
         self.assertEqual([message.data for message in self.explorer.collisions.messages], [])
+
+    def test_1_tells_meanwhile_what_it_does(self):
+        states = {message.state for message in self.feedback}
+        self.assertLessEqual({"exploring", "returning"}, states)
+        explored = [message.explored_m2 for message in self.feedback]
+        self.assertLess(explored[0], max(explored))
+        self.assertGreater(len(self.viewpoints), 5)
+        diagnostics = self.explorer.diagnostics
+        self.assertEqual(diagnostics.value("exploration", "last result"), self.exploration.reason)
+        self.assertEqual(diagnostics.count("maps unusable", "exploration"), 0)
 
     def test_2_saves_the_map_when_it_is_switched_off(self):
         self.assertIn("map saved in " + self.map, self.explorer.output())
