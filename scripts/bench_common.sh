@@ -9,11 +9,12 @@ bench=$(basename "$0" .sh)
 
 only=()   # names that are wanted; empty: all
 run=yes   # empty: only the table
+listing=  # not empty: only the names
 fresh=    # not empty: measure keeps no results that are there
 table=()  # arguments of the script that prints it
 processes=1  # in the background at once
 started=()   # their numbers
-declare -A values=([--table-only]=0 [--peer]=2)  # of options; others have one
+declare -A values=([--table-only]=0 [--list]=0 [--peer]=2)  # of options; others have one
 
 say() { echo "$bench: $*" >&2; }
 
@@ -38,11 +39,19 @@ parse_options() {
       --only) only+=("$2") ;;
       --peer) table+=(--peer "$2" "$3") ;;
       --table-only) run= ;;
+      --list) listing=yes ;;
       --markdown) table+=(--markdown "$2") ;;
       *) own_option "$@" || fail "unknown option $1 (--help lists the options)" ;;
     esac
     shift $((needs + 1))
   done
+}
+
+# list_if_asked ENTRY...: prints the names, the first word of each, and ends
+list_if_asked() {
+  [ -z "$listing" ] && return
+  printf '%s\n' "${@%% *}"
+  exit 0
 }
 
 # require PROGRAM...: paths below the folder of the programs
@@ -84,19 +93,26 @@ finish_background() {
   [ -z "$failed" ] || fail "see the messages above"
 }
 
-# measure THREADS FOLDER PROGRAM [ARGUMENT...]: unless FOLDER holds the results of these arguments
-# and programs, which it names once the program is through
+# of_programs ARGUMENTS: with what tells these programs from others
+of_programs() { echo "$1 by $(cat "$build"/devel/lib/libhv_*.so | sha256sum)"; }
+
+# kept FOLDER ARGUMENTS: whether FOLDER holds the results of these arguments and programs
+kept() { [ -z "$fresh" ] && [ "$(cat "$1/arguments.txt" 2>/dev/null)" = "$(of_programs "$2")" ]; }
+
+# keep FOLDER ARGUMENTS: once the results are complete
+keep() { of_programs "$2" >"$1/arguments.txt"; }
+
+# measure THREADS FOLDER PROGRAM [ARGUMENT...]: unless FOLDER holds the results already
 measure() {
   local threads=$1 folder=$2 program=$3 arguments="${*:3}"
   [[ $arguments != *--weights* ]] || arguments+=" of $(sha256sum <"${weights:?}")"
-  arguments+=" by $(cat "$build"/devel/lib/libhv_*.so | sha256sum)"
-  [ -z "$fresh" ] && [ "$(cat "$folder/arguments.txt" 2>/dev/null)" = "$arguments" ] && return
+  ! kept "$folder" "$arguments" || return 0
   say "${folder#"$out/"}"
   rm -rf "$folder"
   mkdir -p "$folder"
   "$programs/hv_replay/$program" "${@:4}" --threads "$threads" --json >"$folder/run.json" \
     2>"$folder/log.txt" || fail "$program failed: $(tail -n 1 "$folder/log.txt")"
-  echo "$arguments" >"$folder/arguments.txt"
+  keep "$folder" "$arguments"
 }
 
 # print_table SCRIPT [ARGUMENT...]: with what has been gathered in `table`

@@ -31,6 +31,7 @@ usage: bench_exploration.sh [options]
   --time-limit S               simulated seconds of a run (default: $seconds)
   --point-share S              share of LiDAR columns fired, for speed (default: $share)
   --processes N                runs at once, one thread each (default: $processes)
+  --list                       only the names
   --table-only                 no runs: the table of the results that are there
   --markdown FILE              also write the table to FILE
 The programs are those of scripts/setup.sh.
@@ -69,6 +70,7 @@ own_option() {
   esac
 }
 parse_options "$@"
+list_if_asked "${dungeons[@]}" "${worlds[@]}"
 require hv_replay/hv_explore hv_replay/hv_explore_eval hv_replay/hv_plot_curves
 [ -z "$weights" ] || planners+=(sac)
 for planner in "${planners[@]}"; do table+=(--planner "$planner"); done

@@ -25,6 +25,7 @@ usage: bench_loop.sh [options]
                    match, however bad: pose of the query in the frame of the match [m], accepted 1
                    where the program reports a loop by its defaults; empty where there is no match
   --only NAME      this sequence only; may be repeated
+  --list           only the names
   --table-only     no runs: the table of the results that are there
   --markdown FILE  also write the table to FILE
 The programs are those of scripts/setup.sh.
@@ -34,6 +35,7 @@ USAGE
 data=$build/bench/loop_data
 out=$build/bench/loop_results
 parse_options "$@"
+list_if_asked "${sequences[@]}"
 require hv_sim/hv_simulate hv_replay/hv_slam hv_replay/hv_ape
 
 # generate NAME WORLD TRAJECTORY SKIP SECONDS

@@ -32,6 +32,7 @@ usage: bench_navigation.sh [options]
   --goals N                for each of ${#seeds[@]} starts in a world (default: $goals)
   --point-share S          share of LiDAR columns fired, for speed (default: $share)
   --processes N            drives at once, one thread each (default: $processes)
+  --list                   only the names
   --table-only             no runs: the table of the results that are there
   --markdown FILE          also write the table to FILE
 The programs are those of scripts/setup.sh.
@@ -57,6 +58,7 @@ own_option() {
   esac
 }
 parse_options "$@"
+list_if_asked "${worlds[@]}"
 require hv_sim/hv_simulate hv_replay/hv_slam hv_replay/hv_navigate
 table+=(--point-share "$share" --processes "$processes")
 

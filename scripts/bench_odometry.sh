@@ -29,6 +29,7 @@ usage: bench_odometry.sh [options]
   --kitti DIR      start of a KITTI odometry sequence: velodyne/, calib.txt, poses*.txt
   --threads N      threads of one scan's work (default: 1)
   --only NAME      this sequence only; may be repeated
+  --list           only the names
   --table-only     no runs: the table of the results that are there
   --markdown FILE  also write the table to FILE
 The programs are those of scripts/setup.sh.
@@ -47,6 +48,7 @@ own_option() {
   esac
 }
 parse_options "$@"
+list_if_asked "${sequences[@]}"
 require hv_sim/hv_simulate hv_replay/hv_slam hv_replay/hv_ape hv_replay/hv_parameters \
   hv_replay/hv_kitti_to_bag
 

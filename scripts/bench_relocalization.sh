@@ -33,6 +33,7 @@ usage: bench_relocalization.sh [options]
                    error_m,error_deg,ms, a row a trial; may be repeated. Clouds, guesses and truth
                    are in <out>/<world>/ndt_<offset>.csv
   --only NAME      this world only; may be repeated
+  --list           only the names
   --table-only     no runs: the table of the results that are there
   --markdown FILE  also write the table to FILE
 The programs are those of scripts/setup.sh; with -DHV_BENCHMARKS=ON the NDT of PCL runs beside ours.
@@ -48,6 +49,7 @@ own_option() {
   real+=("$2 $3")
 }
 parse_options "$@"
+list_if_asked "${worlds[@]}" "${real[@]}"
 require hv_sim/hv_simulate hv_sim/hv_simulate_scans hv_replay/hv_slam hv_replay/hv_localize \
   hv_replay/hv_relocalize_eval
 pcl=$programs/hv_relocalize_ndt/pcl_ndt_trials
@@ -62,8 +64,11 @@ simulate() {
 
 # scans FOLDER WORLD WORLD_SEED SEED COUNT [OPTION...]
 scans() {
-  [ -f "$1/poses.tum" ] || "$programs/hv_sim/hv_simulate_scans" --world "$2" --world-seed "$3" \
-    --seed "$4" --count "$5" --out "$1" "${@:6}" >/dev/null
+  [ ! -f "$1/poses.tum" ] || return 0
+  local part=$1.part.$$  # another benchmark may make the same
+  "$programs/hv_sim/hv_simulate_scans" --world "$2" --world-seed "$3" \
+    --seed "$4" --count "$5" --out "$part" "${@:6}" >/dev/null
+  mv -T "$part" "$1" 2>/dev/null || rm -rf "$part"
 }
 
 # make_map FOLDER WORLD TRAJECTORY SECONDS

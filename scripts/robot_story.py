@@ -1,0 +1,235 @@
+#!/usr/bin/python3
+"""One story of the whole robot in simulation, measured: it explores an unknown building, saves the
+map, is switched off, wakes up elsewhere, finds out where it is and drives to a goal.
+
+Writes story.json and the logs. The ROS environment must be set up."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import subprocess
+import sys
+import time
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import actionlib
+import numpy as np
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from hv_msgs.msg import ExploreAction, ExploreGoal
+from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "test"))
+from recording import Collector  # noqa: E402
+from whole_robot import IMU, Master, Robot, place_of  # noqa: E402
+
+from free_places import FreePlaces  # noqa: E402
+from node_load import NodeLoad  # noqa: E402
+
+STARTING_S = 90.0
+EXPLORING_S = 3600.0
+LOCALIZING_S = 120.0
+DRIVING_S = 900.0
+FOUND_M = 0.2
+ARRIVED_M = 0.3
+LATENCIES = {"scan_to_pose": ("resources", "scan to pose"),
+             "obstacles_to_velocity": ("navigation", "obstacles to velocity")}
+
+
+@dataclass
+class Stage:
+    """What the robot did between being switched on and off."""
+
+    seconds: float = 0.0  # simulated
+    wall_s: float = 0.0
+    travelled_m: float = 0.0
+    collisions: int = 0
+    latency_ms: dict[str, dict[str, float]] = field(default_factory=dict)
+    load: dict[str, dict[str, float]] = field(default_factory=dict)
+
+
+@dataclass
+class Story:
+    """How far it came; `failure` is empty when it came to its end."""
+
+    failure: str = ""
+    explored_m2: float = 0.0
+    end_of_exploration: str = ""
+    exploration: Stage = field(default_factory=Stage)
+    found_after_s: float = -1.0
+    found_error_m: float = -1.0
+    goal_error_m: float = -1.0
+    drive: Stage = field(default_factory=Stage)
+
+
+class Failure(Exception):
+    """The story ends here."""
+
+
+def wait(condition, limit_s: float, otherwise: str):
+    """The first true value of `condition`, in wall time."""
+    end = time.monotonic() + limit_s
+    while time.monotonic() < end:
+        if value := condition():
+            return value
+        time.sleep(0.05)
+    raise Failure(otherwise)
+
+
+def travelled(robot: Robot) -> float:
+    places = np.array([place_of(message.pose.pose) for message in robot.truth.messages])
+    return float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
+
+
+def latencies(robot: Robot) -> dict[str, dict[str, float]]:
+    values = {}
+    for name, (status, key) in LATENCIES.items():
+        texts = {what: robot.diagnostics.value(status, f"{key} {entry} [ms]")
+                 for what, entry in (("median", "median"), ("p99", "99th percentile"),
+                                     ("max", "max since start"))}
+        values[name] = {what: float(text) for what, text in texts.items() if text}
+    return values
+
+
+def measured(robot: Robot, load: NodeLoad) -> Stage:
+    stamps = [message.header.stamp.to_sec() for message in robot.truth.messages]
+    return Stage(stamps[-1] - stamps[0], load.wall_s(), travelled(robot),
+                 len(robot.collisions), latencies(robot), load.measure())
+
+
+class Teller:
+    """Plays one story."""
+
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        self._arguments = arguments
+        self._map = arguments.out / "map"
+        self._random = np.random.default_rng(arguments.seed)
+        self.story = Story()
+
+    def _switch_on(self, log: str, *arguments: str, start=None) -> tuple[Robot, NodeLoad]:
+        given = self._arguments
+        robot = Robot(str(given.out / log), start, f"world:={given.world}",
+                      f"seed:={given.seed}", f"point_share:={given.point_share}",
+                      f"sim_rate:={given.rate}", f"people:={str(given.people).lower()}", *arguments)
+        wait(lambda: len(robot.truth) > 0, STARTING_S, "the simulation does not start")
+        return robot, NodeLoad()
+
+    def explore(self) -> None:
+        robot, load = self._switch_on("exploration.log", "mode:=exploration",
+                                      f"save_map:={self._map}")
+        try:
+            client = actionlib.SimpleActionClient("/hv_explore_sac/explore", ExploreAction)
+            wait(lambda: client.wait_for_server(rospy.Duration(1.0)), STARTING_S,
+                 "exploration does not start")
+            self._begin_in_building(robot)
+            results = []
+            client.send_goal(ExploreGoal(), done_cb=lambda *result: results.append(result))
+            wait(lambda: results or not robot.is_on(), EXPLORING_S, "exploration does not end")
+            if not results:
+                raise Failure("a node ended while exploring")
+            status, result = results[0]
+            self.story.end_of_exploration = result.reason
+            self.story.explored_m2 = result.explored_m2
+            if status != GoalStatus.SUCCEEDED:
+                raise Failure(f"exploration: {result.reason}")
+        finally:
+            self.story.exploration = measured(robot, load)
+            robot.switch_off()
+        self._expect_map()
+
+    def _begin_in_building(self, robot: Robot) -> None:
+        """Where the map begins: at the IMU, with the axes of the base."""
+        pose = robot.truth.messages[-1].pose.pose
+        self._yaw = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
+        self._origin = self._turned(IMU) + np.array(place_of(pose))
+
+    def _turned(self, vector) -> np.ndarray:
+        cos, sin = math.cos(self._yaw), math.sin(self._yaw)
+        return np.array([[cos, -sin], [sin, cos]]) @ np.asarray(vector)
+
+    def _in_building(self, place) -> tuple[float, float]:
+        return tuple(self._turned(place) + self._origin)
+
+    def _expect_map(self) -> None:
+        check = subprocess.run([str(self._arguments.hv_map), "verify", str(self._map)],
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if check.returncode != 0:
+            raise Failure(f"the saved map: {check.stdout.strip().splitlines()[-1]}")
+
+    def wake_up_elsewhere(self) -> None:
+        places = FreePlaces(self._map)
+        woken = places.far_from((-IMU[0], -IMU[1]), self._random)
+        goal = places.far_from(woken, self._random)
+        start = (*self._in_building(woken), float(self._random.uniform(-180.0, 180.0)))
+        robot, load = self._switch_on("navigation.log", "mode:=navigation", f"map:={self._map}",
+                                      start=start)
+        try:
+            poses = Collector("/localization_pose", PoseWithCovarianceStamped)
+            begun = robot.truth.messages[0].header.stamp.to_sec()
+            wait(lambda: len(poses) > 0, LOCALIZING_S, "the place is not found")
+            found = poses.messages[-1]
+            self.story.found_after_s = found.header.stamp.to_sec() - begun
+            self.story.found_error_m = self._error(robot, place_of(found.pose.pose))
+            if self.story.found_error_m > FOUND_M:
+                raise Failure(f"the place is wrong by {self.story.found_error_m:.2f} m")
+            self._drive_to(robot, goal)
+        finally:
+            self.story.drive = measured(robot, load)
+            robot.switch_off()
+
+    def _error(self, robot: Robot, place_in_map) -> float:
+        return math.dist(self._in_building(place_in_map), robot.here())
+
+    def _drive_to(self, robot: Robot, goal: tuple[float, float]) -> None:
+        client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
+        wait(lambda: client.wait_for_server(rospy.Duration(1.0)), STARTING_S,
+             "navigation does not start")
+        message = MoveBaseGoal()
+        message.target_pose.header.frame_id = "map"
+        message.target_pose.pose.position.x, message.target_pose.pose.position.y = goal
+        message.target_pose.pose.orientation.w = 1.0
+        results = []
+        client.send_goal(message, done_cb=lambda status, _: results.append(status))
+        wait(lambda: results or not robot.is_on(), DRIVING_S, "the goal is not reached in time")
+        if results != [GoalStatus.SUCCEEDED]:
+            raise Failure("driving: " + client.get_goal_status_text())
+        self.story.goal_error_m = self._error(robot, goal)
+        if self.story.goal_error_m > ARRIVED_M:
+            raise Failure(f"the goal is missed by {self.story.goal_error_m:.2f} m")
+
+
+def parse_arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--world", required=True, help="as world:= of hv_liom.launch")
+    parser.add_argument("--seed", type=int, required=True)
+    parser.add_argument("--people", action="store_true", help="people walk around")
+    parser.add_argument("--point-share", type=float, default=0.25)
+    parser.add_argument("--rate", type=float, default=1.0, help="simulated seconds per second")
+    parser.add_argument("--hv-map", type=Path, required=True, help="the program hv_map")
+    parser.add_argument("--out", type=Path, required=True)
+    return parser.parse_args()
+
+
+def main() -> int:
+    arguments = parse_arguments()
+    arguments.out = arguments.out.resolve()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    master = Master()
+    rospy.init_node("robot_story", disable_signals=True)
+    teller = Teller(arguments)
+    try:
+        teller.explore()
+        teller.wake_up_elsewhere()
+    except (Failure, ValueError) as failure:
+        teller.story.failure = str(failure)
+    (arguments.out / "story.json").write_text(json.dumps(asdict(teller.story), indent=2) + "\n")
+    master.stop()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
