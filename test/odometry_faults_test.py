@@ -172,7 +172,7 @@ class OdometryFaults(unittest.TestCase):
         self.assertAlmostEqual(first.pose.pose.position.y, before.y, delta=0.3)
 
     def test_11_points_are_lost_and_come_back(self):
-        part = shifted(self.player.clouds(0, 60), LOST_POINTS_S)
+        part = shifted(self.player.clouds(0, 66), LOST_POINTS_S)
         first, last = (clouds_of(part)[number].header.stamp for number in (30, 45))
         self.play([(topic, message) for topic, message in part
                    if topic == IMU or not first < message.header.stamp < last])
@@ -193,7 +193,7 @@ class OdometryFaults(unittest.TestCase):
             cloud.data = 10 * cloud.data
             cloud.width *= 10
             cloud.row_step *= 10
-        part = shifted(self.player.clouds(0, 60), MANY_POINTS_S)
+        part = shifted(self.player.clouds(0, 66), MANY_POINTS_S)
         for cloud in clouds_of(part)[15:]:
             repeat(cloud)
         self.play(part)
