@@ -51,6 +51,6 @@ cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@" >"$build/setup.log" 2>&1 ||
   { tail -n 30 "$build/setup.log" >&2; fail "cmake failed, see $build/setup.log"; }
-echo "setup: building (10 minutes on two cores the first time)"
+echo "setup: building (half an hour on two cores the first time)"
 cmake --build "$build"
 echo "setup: done; programs are in $build/devel/lib, 'source $build/devel/setup.bash' for ROS"
