@@ -1,10 +1,10 @@
 #include "health.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 
+#include "hv_core/elapsed.h"
 #include "hv_core/memory.h"
 
 namespace hv::lio {
@@ -67,10 +67,9 @@ void Health::OnScan(const ScanResult& result) {
 }
 
 void Health::OnPublished(const ScanResult& result) {
-  const std::chrono::duration<double, std::milli> latency =
-      std::chrono::steady_clock::now() - result.arrival;
+  const double latency_ms = MillisecondsSince(result.arrival);
   const std::lock_guard<std::mutex> lock(mutex_);
-  latencies_.Add(latency.count());
+  latencies_.Add(latency_ms);
 }
 
 void Health::OnCounters(const EngineCounters& engine, const InputQueue::Counters& queue) {
