@@ -11,7 +11,6 @@
 namespace hv {
 namespace {
 
-
 /// Tangent vectors with rotations of zero, tiny, random and almost-pi length and translations from
 /// zero to 10 m.
 std::vector<Vector6d> TangentVectors() {

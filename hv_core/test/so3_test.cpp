@@ -10,7 +10,6 @@
 namespace hv::so3 {
 namespace {
 
-
 /// Rotation vectors of zero, tiny, series-boundary, random and almost-pi length, in fixed random
 /// directions.
 std::vector<Eigen::Vector3d> RotationVectors(double longest) {

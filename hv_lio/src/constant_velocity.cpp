@@ -15,8 +15,7 @@ constexpr double kLongestStride = 0.01;
 void ConstantVelocityConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("angular_noise", angular_noise,
                 "how fast the attitude leaves constant rotation [rad/s/sqrt(Hz)]");
-  visitor.Field("linear_noise", linear_noise,
-                "how fast the velocity changes [m/s^2/sqrt(Hz)]");
+  visitor.Field("linear_noise", linear_noise, "how fast the velocity changes [m/s^2/sqrt(Hz)]");
   visitor.Field("initial_speed_mps", initial_speed_mps,
                 "standard deviation of the velocity at the start [m/s]");
 }

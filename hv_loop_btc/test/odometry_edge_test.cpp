@@ -27,7 +27,8 @@ Keyframe MakeKeyframe(std::uint32_t id, const Pose& T_odom_imu) {
   return keyframe;
 }
 
-const Keyframe kFromKeyframe = MakeKeyframe(4, MakePose(RotationFromRpy(0.1, -0.2, 1.0), {10.0, 5.0, 1.0}));
+const Keyframe kFromKeyframe =
+    MakeKeyframe(4, MakePose(RotationFromRpy(0.1, -0.2, 1.0), {10.0, 5.0, 1.0}));
 const Keyframe kTo = MakeKeyframe(5, MakePose(RotationFromRpy(0.2, -0.1, 1.7), {11.0, 6.0, 1.1}));
 
 Eigen::Vector3d TranslationVariances(const GraphEdge& edge) {
@@ -110,8 +111,10 @@ TEST(OdometryEdge, PerfectPosesStillDrift) {
 }
 
 TEST(OdometryEdge, VarianceGrowsWithTheDistance) {
-  const Keyframe far = MakeKeyframe(5, kFromKeyframe.T_odom_imu * Eigen::Translation3d(30.0, 0.0, 0.0));
-  const Keyframe near = MakeKeyframe(5, kFromKeyframe.T_odom_imu * Eigen::Translation3d(0.1, 0.0, 0.0));
+  const Keyframe far =
+      MakeKeyframe(5, kFromKeyframe.T_odom_imu * Eigen::Translation3d(30.0, 0.0, 0.0));
+  const Keyframe near =
+      MakeKeyframe(5, kFromKeyframe.T_odom_imu * Eigen::Translation3d(0.1, 0.0, 0.0));
   const OdometryEdgeConfig config;
   EXPECT_GT(TranslationVariances(OdometryEdge(config, kFromKeyframe, far)).x(),
             2.0 * TranslationVariances(OdometryEdge(config, kFromKeyframe, near)).x());

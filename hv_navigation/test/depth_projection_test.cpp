@@ -24,7 +24,8 @@ DepthImage Render(const SolidScene& scene, const Pose& T_odom_camera, double noi
   image.height = 480;
   for (int row = 0; row < image.height; ++row) {
     for (int column = 0; column < image.width; ++column) {
-      const Vector3d ray((column - kRealCamera.cx) / kRealCamera.fx, (row - kRealCamera.cy) / kRealCamera.fy, 1.0);
+      const Vector3d ray((column - kRealCamera.cx) / kRealCamera.fx,
+                         (row - kRealCamera.cy) / kRealCamera.fy, 1.0);
       const double range =
           scene.Cast(T_odom_camera.translation(), T_odom_camera.linear() * ray.normalized());
       double depth = range / ray.norm();

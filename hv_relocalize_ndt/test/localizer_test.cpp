@@ -77,8 +77,8 @@ class LocalizerTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     std::mt19937 random(51);
-    map_ =
-        std::make_unique<PriorMap>("hall", CloudOf(loop::Hall(kHallSeed), random), RelocalizeConfig());
+    map_ = std::make_unique<PriorMap>("hall", CloudOf(loop::Hall(kHallSeed), random),
+                                      RelocalizeConfig());
   }
   static void TearDownTestSuite() { map_.reset(); }
 

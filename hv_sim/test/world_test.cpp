@@ -273,7 +273,8 @@ TEST_F(FloorPlanFile, BadFilesAreNamedWithTheirFault) {
   EXPECT_TRUE(Contains(WorldErrorOf((folder_ / "absent.yaml").string()), "absent.yaml"));
   EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml()), "plan.pgm: cannot be opened"));
   Write("plan.pgm", Hall());
-  EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml("resolution: 0.25\n", "")), "'resolution' is missing"));
+  EXPECT_TRUE(
+      Contains(WorldErrorOf(WriteYaml("resolution: 0.25\n", "")), "'resolution' is missing"));
   EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml("0.25", "fine")), "'resolution' has the wrong type"));
   EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml("0.25", "-1")), "resolution must be"));
   EXPECT_TRUE(Contains(WorldErrorOf(WriteYaml("0.0]", "0.5]")), "origin must be"));

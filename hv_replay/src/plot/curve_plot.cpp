@@ -116,7 +116,8 @@ void PlotCurves(const std::vector<CurvePanel>& panels, const std::string& title,
   canvas.Text({28.0, 40.0}, title, {22.0, plot::kTextColour, plot::TextAnchor::kLeft, true});
   double top = kTop;
   for (const CurvePanel& panel : panels) {
-    DrawPanel(canvas, panel, {kLeft, top + kAbove, kPictureWidth - kRight, top + kPanelHeight - kBelow});
+    DrawPanel(canvas, panel,
+              {kLeft, top + kAbove, kPictureWidth - kRight, top + kPanelHeight - kBelow});
     top += kPanelHeight;
   }
   canvas.Save(path);
