@@ -13,6 +13,10 @@ option(HV_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
 # hv_target(<target>): the project's warnings for one of its own targets.
 function(hv_target target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+  if(CMAKE_UNITY_BUILD)
+    # Files that are compiled together look like headers to it.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
   if(HV_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the Debian packages HV-LIOM needs (without recommends) and builds it into build/.
 # Safe to repeat: packages that are there are left alone, the build is incremental.
-# Arguments go to cmake; HV_BUILD_DIR names another build folder.
+# Arguments go to cmake; HV_BUILD_DIR names another build folder. Files of a target are compiled
+# together, which halves the time of the first build; -DCMAKE_UNITY_BUILD=OFF compiles one by one.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -49,6 +50,7 @@ export PATH="/usr/bin:$PATH"
 mkdir -p "$build"
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DPYTHON_EXECUTABLE=/usr/bin/python3 -DPython3_EXECUTABLE=/usr/bin/python3 \
+  -DCMAKE_UNITY_BUILD=ON \
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@" >"$build/setup.log" 2>&1 ||
   { tail -n 30 "$build/setup.log" >&2; fail "cmake failed, see $build/setup.log"; }
 echo "setup: building (half an hour on two cores the first time)"

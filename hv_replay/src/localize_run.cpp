@@ -25,7 +25,7 @@ std::string RowOf(const relocalize::LocalizerUpdate& update, Time stamp, double 
   return ToString(stamp) + "," + ToString(update.state) + text + update.reason;
 }
 
-JsonObject TimesJson(const std::vector<double>& milliseconds) {
+JsonObject DurationsJson(const std::vector<double>& milliseconds) {
   const Statistics times = Summarize(milliseconds);
   JsonObject json;
   json.Add("mean", times.mean).Add("median", times.median).Add("max", times.max);
@@ -110,8 +110,8 @@ JsonObject SummaryJson(const LocalizeRunSummary& summary) {
       .AddCount("losses", summary.losses)
       .Add("first_pose_s", summary.first_pose_s)
       .Add("longest_search_s", summary.longest_search_s)
-      .Add("track_ms", TimesJson(summary.track_ms))
-      .Add("search_ms", TimesJson(summary.search_ms))
+      .Add("track_ms", DurationsJson(summary.track_ms))
+      .Add("search_ms", DurationsJson(summary.search_ms))
       .Add("error", summary.odometry.error);
   return json;
 }

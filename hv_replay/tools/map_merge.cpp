@@ -17,7 +17,7 @@ namespace {
 
 using hv::replay::JsonObject;
 
-struct Arguments {
+struct MergeArguments {
   std::vector<std::string> maps;
   std::string out;
   std::string config;
@@ -26,7 +26,7 @@ struct Arguments {
 };
 
 /// Early, since joining takes its time. What is replaced must be a map.
-void CheckTarget(const Arguments& arguments) {
+void CheckTarget(const MergeArguments& arguments) {
   std::error_code ignored;
   if (!std::filesystem::exists(arguments.out, ignored)) return;
   if (!arguments.replace) {
@@ -37,7 +37,7 @@ void CheckTarget(const Arguments& arguments) {
   }
 }
 
-hv::loop::MapMergerConfig ConfigOf(const Arguments& arguments, const hv::MapFolder& first) {
+hv::loop::MapMergerConfig ConfigOf(const MergeArguments& arguments, const hv::MapFolder& first) {
   hv::loop::MapMergerConfig config;
   if (!arguments.config.empty()) {
     hv::ReadConfig(hv::LoadYamlFile(arguments.config), arguments.config, config);
@@ -101,7 +101,7 @@ void Print(const hv::loop::MergedMap& merged) {
   std::printf("left out     %zu keyframes that no loop connects to the others\n", merged.unplaced);
 }
 
-int Run(const Arguments& arguments) {
+int Run(const MergeArguments& arguments) {
   CheckTarget(arguments);
   std::vector<hv::MapFolder> maps;
   for (const std::string& path : arguments.maps) maps.push_back(hv::MapFolder::Open(path));
@@ -124,7 +124,7 @@ int Run(const Arguments& arguments) {
 }  // namespace
 
 std::function<int()> AddMergeCommand(CLI::App& app) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<MergeArguments>();
   CLI::App* command =
       app.add_subcommand("merge", "join maps of several sessions, in the frame of the first");
   constexpr int kMostMaps = 1000;

@@ -109,9 +109,9 @@ struct SmallGraph {
 };
 
 /// Heads of 4 and of 16 columns take different loops.
-class AttentionGradient : public testing::TestWithParam<Index> {};
+class AttentionGradients : public testing::TestWithParam<Index> {};
 
-TEST_P(AttentionGradient, OfOneSetOfNodes) {
+TEST_P(AttentionGradients, OfOneSetOfNodes) {
   const SmallGraph graph(7);
   const Index width = GetParam();
   ParameterLayout layout;
@@ -127,7 +127,7 @@ TEST_P(AttentionGradient, OfOneSetOfNodes) {
              layout, 7, width);
 }
 
-INSTANTIATE_TEST_SUITE_P(Widths, AttentionGradient, testing::Values(8, 32));
+INSTANTIATE_TEST_SUITE_P(Widths, AttentionGradients, testing::Values(8, 32));
 
 TEST(Gradient, EncoderLayer) {
   const SmallGraph graph(6);
