@@ -13,7 +13,7 @@ option(HV_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
 # hv_target(<target>): the project's warnings for one of its own targets.
 function(hv_target target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
-  if(CMAKE_UNITY_BUILD)
+  if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # Files that are compiled together look like headers to it.
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
   endif()

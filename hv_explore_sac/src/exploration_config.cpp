@@ -21,6 +21,9 @@ void ViewpointConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("neighbors", neighbors, "nearest viewpoints that edges may lead to");
   visitor.Field("view_range", view_range, "from which frontier points are observable [cells]");
   visitor.Field("min_utility", min_utility, "fewer observable frontier points count as none");
+  visitor.Field("new_side_deg", new_side_deg,
+                "around a frontier point that the robot has been as near to, from where a look may "
+                "show more; 0: from everywhere [deg]");
 }
 
 void ViewpointConfig::Validate(ConfigProblems& problems) const {
@@ -29,6 +32,8 @@ void ViewpointConfig::Validate(ConfigProblems& problems) const {
   problems.Require(neighbors >= 1, "viewpoint.neighbors", "must be at least 1");
   problems.Require(view_range > 0.0, "viewpoint.view_range", "must be positive");
   problems.Require(min_utility >= 1, "viewpoint.min_utility", "must be at least 1");
+  problems.Require(new_side_deg >= 0.0 && new_side_deg <= 180.0, "viewpoint.new_side_deg",
+                   "must be 0 to 180");
 }
 
 void SimulationConfig::Describe(ConfigVisitor& visitor) {

@@ -28,6 +28,9 @@ void PlacesConfig::Describe(ConfigVisitor& visitor) {
   visitor.Field("neighbors", neighbors, "nearest viewpoints that edges may lead to");
   visitor.Field("view_range_m", view_range_m, "from which frontier points are observable [m]");
   visitor.Field("min_utility", min_utility, "fewer observable frontier points count as none");
+  visitor.Field("new_side_deg", new_side_deg,
+                "around a frontier point that the robot has been as near to, from where a look may "
+                "show more; 0: from everywhere [deg]");
   visitor.Field("margin_m", margin_m,
                 "kept free around the largest circle in the footprint of the robot [m]");
 }
@@ -39,6 +42,8 @@ void PlacesConfig::Validate(ConfigProblems& problems) const {
   problems.Require(view_range_m >= spacing_m && view_range_m <= 100.0, "places.view_range_m",
                    "must be spacing_m to 100");
   problems.Require(min_utility >= 1, "places.min_utility", "must be at least 1");
+  problems.Require(new_side_deg >= 0.0 && new_side_deg <= 180.0, "places.new_side_deg",
+                   "must be 0 to 180");
   problems.Require(margin_m >= 0.0 && margin_m <= 1.0, "places.margin_m", "must be 0 to 1");
 }
 
@@ -117,6 +122,7 @@ ExplorationConfig ExplorerConfig::InCells(double cell_m) const {
   cells.viewpoint.neighbors = places.neighbors;
   cells.viewpoint.view_range = places.view_range_m / cell_m;
   cells.viewpoint.min_utility = places.min_utility;
+  cells.viewpoint.new_side_deg = places.new_side_deg;
   return cells;
 }
 

@@ -1,8 +1,26 @@
 #include "hv_explore_sac/frontier_views.h"
 
 #include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "hv_core/angles.h"
 
 namespace hv::explore {
+namespace {
+
+/// A view from nearer than this share of the distance of another one is a better one.
+constexpr double kNearer = 0.7;
+
+/// Whether a view along `other`, from a viewpoint to a point, shows what a view along `view` of the
+/// same point would show.
+bool Replaces(const Eigen::Vector2d& other, const Eigen::Vector2d& view, double same_side) {
+  const double near = other.norm();
+  const double distance = view.norm();
+  return kNearer * near <= distance && other.dot(view) >= same_side * near * distance;
+}
+
+}  // namespace
 
 void FrontierViews::Update(const Belief& belief, const Frontiers& frontiers,
                            const ViewpointGraph& graph) {
@@ -19,18 +37,17 @@ void FrontierViews::Update(const Belief& belief, const Frontiers& frontiers,
     } else {
       Look(viewpoint, cell, frontiers.points(), belief, frontiers);
     }
-    const std::vector<View>& views = views_[static_cast<std::size_t>(viewpoint)];
-    seen_[static_cast<std::size_t>(viewpoint)] =
-        static_cast<int>(std::count_if(views.begin(), views.end(), [](const View& view) {
-          return view.blocked == Belief::kNone;
-        }));
   }
+  if (config_.new_side_deg > 0.0) FindKnown(frontiers, graph);
+  std::transform(views_.begin(), views_.end(), seen_.begin(), [](const std::vector<View>& views) {
+    return static_cast<int>(std::count_if(views.begin(), views.end(), Observes));
+  });
 }
 
 void FrontierViews::ListSeen(int viewpoint, std::vector<int>& points) const {
   points.clear();
   for (const View& view : views_[static_cast<std::size_t>(viewpoint)]) {
-    if (view.blocked == Belief::kNone) points.push_back(view.point);
+    if (Observes(view)) points.push_back(view.point);
   }
 }
 
@@ -60,6 +77,32 @@ void FrontierViews::Look(int viewpoint, const Eigen::Vector2i& cell, const std::
     if ((place - cell).squaredNorm() >= range2) continue;
     views_[static_cast<std::size_t>(viewpoint)].push_back(
         {point, belief.FirstBlocked(cell, place)});
+  }
+}
+
+/// Compares each view with those from viewpoints where the robot has been.
+void FrontierViews::FindKnown(const Frontiers& frontiers, const ViewpointGraph& graph) {
+  const double same_side = std::cos(config_.new_side_deg * kRadiansPerDegree);
+  const auto along = [&](int viewpoint, const View& view) -> Eigen::Vector2d {
+    return (frontiers.CellOf(view.point) - graph.CellOf(viewpoint)).cast<double>();
+  };
+  std::unordered_map<int, std::vector<Eigen::Vector2d>> had;  // views of each point
+  for (int viewpoint = 0; viewpoint < graph.size(); ++viewpoint) {
+    if (!graph.Visited(viewpoint)) continue;
+    for (const View& view : views_[static_cast<std::size_t>(viewpoint)]) {
+      if (view.blocked == Belief::kNone) had[view.point].push_back(along(viewpoint, view));
+    }
+  }
+  for (int viewpoint = 0; viewpoint < graph.size(); ++viewpoint) {
+    for (View& view : views_[static_cast<std::size_t>(viewpoint)]) {
+      if (view.blocked != Belief::kNone) continue;
+      const auto others = had.find(view.point);
+      view.known = others != had.end() &&
+                   std::any_of(others->second.begin(), others->second.end(),
+                               [&](const Eigen::Vector2d& other) {
+                                 return Replaces(other, along(viewpoint, view), same_side);
+                               });
+    }
   }
 }
 

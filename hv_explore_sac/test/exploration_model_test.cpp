@@ -1,6 +1,7 @@
 #include "hv_explore_sac/exploration_model.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 #include <set>
 #include <tuple>
@@ -246,6 +247,52 @@ TEST(RecallTest, BringsBackWhereTheRobotStood) {
   ASSERT_EQ(observation.history.size(), 3U);
   EXPECT_EQ(graph.CellOf(observation.node(observation.history[1]).viewpoint),
             Eigen::Vector2i(3, 5));
+}
+
+/// The robot has stood at `stood` on a large free place with an unknown spot in its middle.
+ExplorationModel AroundASpot(double new_side_deg, const Eigen::Vector2i& stood) {
+  ExplorationConfig config;
+  config.viewpoint.spacing_x = config.viewpoint.spacing_y = 10.0;
+  config.viewpoint.min_utility = 3;
+  config.viewpoint.new_side_deg = new_side_deg;
+  ExplorationModel model(config, 200, 200);
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      const bool unknown = std::abs(x - 100) < 8 && std::abs(y - 100) < 8;
+      model.belief().Set(model.belief().IndexOf({x, y}), unknown ? Cell::kUnknown : Cell::kFree);
+    }
+  }
+  model.Update(stood);
+  return model;
+}
+
+int UtilityAt(const ExplorationModel& model, const Eigen::Vector2i& cell) {
+  const int viewpoint = model.graph().At(cell);
+  EXPECT_GE(viewpoint, 0);
+  return model.UtilityOf(viewpoint);
+}
+
+TEST(NewSideTest, FarViewsShowNothingThatTheRobotHasNotSeen) {
+  const Eigen::Vector2i farther(30, 100);
+  EXPECT_GT(UtilityAt(AroundASpot(0.0, {60, 100}), farther), 0);
+  EXPECT_EQ(UtilityAt(AroundASpot(60.0, {60, 100}), farther), 0);
+}
+
+TEST(NewSideTest, ViewsFromNearerAndFromElsewhereCount) {
+  const ExplorationModel model = AroundASpot(60.0, {60, 100});
+  EXPECT_GT(UtilityAt(model, {80, 100}), 0);
+  EXPECT_GT(UtilityAt(model, {140, 100}), 0);
+  EXPECT_EQ(UtilityAt(model, {140, 100}), UtilityAt(AroundASpot(0.0, {60, 100}), {140, 100}));
+}
+
+TEST(NewSideTest, LooksFromAllSidesLeaveNothing) {
+  ExplorationModel model = AroundASpot(60.0, {60, 100});
+  for (const Eigen::Vector2i& cell :
+       {Eigen::Vector2i(140, 100), Eigen::Vector2i(100, 60), Eigen::Vector2i(100, 140)}) {
+    model.Update(cell);
+  }
+  EXPECT_EQ(UtilityAt(model, {150, 150}), 0);
+  EXPECT_EQ(UtilityAt(model, {40, 90}), 0);
 }
 
 }  // namespace

@@ -27,6 +27,14 @@ explore::RobotSize SizeOf(const navigation::Footprint& footprint) {
   return {footprint.InscribedRadius(), footprint.CircumscribedRadius()};
 }
 
+/// With what is kept free around the robot.
+sim::RobotShape Grown(sim::RobotShape shape, double margin_m) {
+  shape.front_m += margin_m;
+  shape.back_m += margin_m;
+  shape.half_width_m += margin_m;
+  return shape;
+}
+
 std::optional<explore::GoalOutcome> OutcomeOf(const navigation::NavigationOutput& output) {
   if (!output.result || *output.result == navigation::NavigationResult::kCancelled) {
     return std::nullopt;
@@ -80,7 +88,7 @@ ExplorationDrive::ExplorationDrive(const SlamConfig& config, sim::World world,
                                    const ExplorationDriveOptions& options)
     : config_(config),
       options_(options),
-      shape_(simulation.robot.shape),
+      shape_(Grown(simulation.robot.shape, config.exploration.explorer.places.margin_m)),
       world_(world),
       explorer_(config.exploration.explorer, SizeOf(config.navigation.planning.footprint),
                 explore::PlannerMakerOf(

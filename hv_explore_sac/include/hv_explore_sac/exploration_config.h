@@ -23,6 +23,7 @@ struct ViewpointConfig {
   int neighbors = 20;               ///< nearest viewpoints that edges may lead to
   double view_range = 70.0;         ///< from which a frontier point is observable [cells]
   int min_utility = 5;              ///< fewer observable frontier points count as none
+  double new_side_deg = 0.0;        ///< see FrontierViews; 0: every view counts
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

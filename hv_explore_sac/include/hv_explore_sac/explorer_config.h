@@ -14,12 +14,13 @@ namespace hv::explore {
 /// Where a robot looks for what is unknown. Made for indoors; lengths are rounded to cells of the
 /// map.
 struct PlacesConfig {
-  double frontier_m = 0.2;    ///< edge of the blocks that frontiers are made of
-  double spacing_m = 0.8;     ///< between viewpoints
-  int neighbors = 20;         ///< nearest viewpoints that edges may lead to
-  double view_range_m = 7.0;  ///< from which a frontier point is observable
-  int min_utility = 3;        ///< fewer observable frontier points count as none
-  double margin_m = 0.04;     ///< kept free around the largest circle in the footprint
+  double frontier_m = 0.2;     ///< edge of the blocks that frontiers are made of
+  double spacing_m = 0.8;      ///< between viewpoints
+  int neighbors = 20;          ///< nearest viewpoints that edges may lead to
+  double view_range_m = 7.0;   ///< from which a frontier point is observable
+  int min_utility = 3;         ///< fewer observable frontier points count as none
+  double new_side_deg = 60.0;  ///< around a frontier point, see FrontierViews
+  double margin_m = 0.04;      ///< kept free around the largest circle in the footprint
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

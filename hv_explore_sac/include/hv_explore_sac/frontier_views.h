@@ -10,7 +10,8 @@
 namespace hv::explore {
 
 /// Which frontier points each viewpoint observes: those within range to which the line through the
-/// belief is free. Not thread-safe.
+/// belief is free. With `new_side_deg`, of those only the ones that the robot has not seen from as
+/// near and the same side yet: another look would show nothing new. Not thread-safe.
 class FrontierViews {
  public:
   explicit FrontierViews(const ViewpointConfig& config) : config_(config) {}
@@ -25,13 +26,16 @@ class FrontierViews {
  private:
   struct View {
     int point;
-    int blocked;  ///< a cell in the way, or Belief::kNone
+    int blocked;         ///< a cell in the way, or Belief::kNone
+    bool known = false;  ///< the robot has had such a view
   };
+  static bool Observes(const View& view) { return view.blocked == Belief::kNone && !view.known; }
   void Restart();
   void Follow(int viewpoint, const Eigen::Vector2i& cell, const Belief& belief,
               const Frontiers& frontiers);
   void Look(int viewpoint, const Eigen::Vector2i& cell, const std::vector<int>& points,
             const Belief& belief, const Frontiers& frontiers);
+  void FindKnown(const Frontiers& frontiers, const ViewpointGraph& graph);
 
   ViewpointConfig config_;
   int renumberings_ = 0;

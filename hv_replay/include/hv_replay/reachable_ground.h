@@ -16,7 +16,8 @@ namespace hv::replay {
 /// are not minded.
 class ReachableGround {
  public:
-  /// `shape`: of the robot, which stands at `T_world_base` at first.
+  /// `shape`: of the robot with what it keeps free around itself. At first it stands at
+  /// `T_world_base`.
   ReachableGround(const sim::World& world, const sim::RobotShape& shape, const Pose& T_world_base);
 
   double area_m2() const;
