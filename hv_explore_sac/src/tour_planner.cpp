@@ -85,7 +85,9 @@ double TourPlanner::Between(int from, int to, const Observation& observation,
   if (distances.empty()) {
     search_.Run(model.graph(), observation.node(from).viewpoint);
     for (const Observation::Node& node : observation.nodes) {
-      distances.push_back(search_.DistanceTo(node.viewpoint));
+      // Edges are not always there both ways; by way of the robot's viewpoint all are joined.
+      const float around = observation.node(from).distance + node.distance;
+      distances.push_back(std::min(search_.DistanceTo(node.viewpoint), around));
     }
   }
   return distances[static_cast<std::size_t>(to)];

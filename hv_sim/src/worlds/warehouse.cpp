@@ -119,6 +119,17 @@ void AddShell(MeshBuilder& mesh) {
   }
 }
 
+/// The ground outside, as far below the floor of the hall as the bed of a lorry is high.
+void AddYard(MeshBuilder& mesh) {
+  constexpr double kFloorAbove = 1.2;
+  constexpr double kWidth = 20.0;
+  mesh.SetReflectivity(0.2);
+  AddFloor(mesh, {{-kWidth, -kWidth}, {kLength + kWidth, kDepth + kWidth}, -kFloorAbove});
+  mesh.SetReflectivity(0.4);
+  mesh.AddBox(Upright({0.5 * kLength, 0.5 * kDepth, -0.5 * kFloorAbove - 0.01}),
+              Vector3d(kLength, kDepth, kFloorAbove));
+}
+
 /// Lattice girders, lamps and a duct under a ridged roof.
 void AddRoof(MeshBuilder& mesh) {
   mesh.SetReflectivity(0.5);
@@ -182,6 +193,7 @@ World MakeWarehouse(std::uint32_t seed) {
   world.name = "warehouse";
   world.route = Route();
   Site site(world.route, world.closed, seed);
+  AddYard(site.mesh);
   AddShell(site.mesh);
   for (const double y : RackAxes()) AddRack(site, y);
   AddRoof(site.mesh);
