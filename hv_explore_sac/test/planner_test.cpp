@@ -1,9 +1,13 @@
 #include "hv_explore_sac/planner.h"
 
+#include <cstdlib>
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "hv_core/error.h"
 #include "hv_explore_sac/exploration_run.h"
+#include "hv_explore_sac/graph_search.h"
 #include "random_maps.h"
 
 namespace hv::explore {
@@ -57,6 +61,42 @@ TEST(PlannerTest, KnowingTheMapIsWorthIt) {
 
 TEST(PlannerTest, UnknownNamesAreRefused) {
   EXPECT_THROW(MakePlanner("best", PlannerInputs()), InputError);
+}
+
+/// A corridor from which two halls lead down, both open to the unknown at their ends. Of the four
+/// viewpoints around it each has edges to two only, so that no edge leads up again.
+ExplorationModel TwoWaysDown() {
+  ExplorationConfig config;
+  config.viewpoint.spacing_x = config.viewpoint.spacing_y = 10.0;
+  config.viewpoint.neighbors = 2;
+  ExplorationModel model(config, 200, 200);
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      const bool in_hall = std::abs(x - 35) < 14 || std::abs(x - 155) < 14;
+      const bool in_corridor = y >= 152 && y < 168 && x >= 12 && x < 188;
+      Cell cell = in_corridor || (in_hall && y < 152) ? Cell::kFree : Cell::kOccupied;
+      if (in_hall && y < 52) cell = Cell::kUnknown;
+      model.belief().Set(model.belief().IndexOf({x, y}), cell);
+    }
+  }
+  model.Update({100, 160});
+  return model;
+}
+
+TEST(PlannerTest, ToursGoByWayOfTheRobotWhereNothingElseLeads) {
+  const ExplorationModel model = TwoWaysDown();
+  Observation observation;
+  model.Observe(observation);
+  const int left = model.graph().At({30, 60});
+  const int right = model.graph().At({150, 60});
+  ASSERT_TRUE(model.ways().Reached(left) && model.ways().Reached(right));
+  GraphSearch search;
+  for (const auto& [from, to] : {std::pair(left, right), std::pair(right, left)}) {
+    search.Run(model.graph(), from);
+    ASSERT_FALSE(search.Reached(to));
+  }
+  const Decision decision = MakePlanner("tour", PlannerInputs())->Choose(observation, model);
+  EXPECT_GT(observation.node(decision.goal).utility, 0);
 }
 
 /// Drives to and fro between the start and its nearest neighbour.
