@@ -13,7 +13,7 @@ from tf2_msgs.msg import TFMessage
 
 CELL_M = 0.1
 SIGHT_M = 4.0
-STEP_M = 0.4
+STEP_M = 0.2
 PERIOD_S = 0.05
 HOME = (1.5, 1.5)
 
