@@ -14,7 +14,7 @@ option(HV_WARNINGS_AS_ERRORS "Treat compiler warnings as errors" OFF)
 function(hv_target target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
   if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Files that are compiled together look like headers to it.
+    # GCC takes files that are compiled together for headers, and warns of their local types.
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
   endif()
   if(HV_WARNINGS_AS_ERRORS)

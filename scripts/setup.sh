@@ -2,7 +2,7 @@
 # Installs the Debian packages HV-LIOM needs (without recommends) and builds it into build/.
 # Safe to repeat: packages that are there are left alone, the build is incremental.
 # Arguments go to cmake; HV_BUILD_DIR names another build folder. Files of a target are compiled
-# together, which halves the time of the first build; -DCMAKE_UNITY_BUILD=OFF compiles one by one.
+# together, which shortens the first build; -DCMAKE_UNITY_BUILD=OFF compiles them one by one.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

@@ -71,7 +71,7 @@ class ExplorationDrive {
 
   SlamConfig config_;
   ExplorationDriveOptions options_;
-  sim::RobotShape shape_;
+  sim::RobotShape shape_;  ///< with what it keeps free around itself
   sim::World world_;
   std::unique_ptr<SimulatedDrive> drive_;
   explore::Explorer explorer_;
