@@ -17,7 +17,10 @@ from visualization_msgs.msg import MarkerArray
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from recording import (  # noqa: E402
-    CONFIG, HV_SLAM, RECORDING, Collector, Diagnostics, Player, odometry_collector, wait_until)
+    CONFIG, HV_SLAM, POINTS, RECORDING, Collector, Diagnostics, Player, odometry_collector,
+    wait_until)
+
+START = 15  # clouds in which the odometry starts; the robot stands in the first
 
 
 def is_symmetric_positive(covariance):
@@ -49,11 +52,21 @@ class OdometryTopics(unittest.TestCase):
                       cls.keyframes, cls.transforms)
         assert wait_until(lambda: all(collector.connected() for collector in collectors))
         assert cls.player.wait_for_node()
-        # Close behind the player: a prediction at IMU rate reaches as far as it is ahead.
-        cls.player.play(cls.player.messages, lambda: len(cls.odometry), ahead=2)
+        cls.play()
         cls.sent = sum(topic == "/points" for topic, _ in cls.player.messages)
         assert wait_until(lambda: len(cls.odometry) > 0.75 * cls.sent)
         assert wait_until(lambda: cls.diagnostics.count("scans tracked") > 0.75 * cls.sent)
+
+    @classmethod
+    def play(cls):
+        """Close behind the player: a prediction at IMU rate reaches as far as it is ahead."""
+        start = cls.player.clouds(end=START)
+        cls.player.play(start)
+        last = max(message.header.stamp for topic, message in start if topic == POINTS)
+        assert wait_until(lambda: len(cls.odometry) > 0
+                          and cls.odometry.messages[-1].header.stamp >= last)
+        cls.player.play(cls.player.clouds(start=START), lambda: len(cls.odometry), ahead=2,
+                        patience_s=10.0)
 
     def test_odometry_comes_for_every_scan_after_the_start(self):
         stamps = [message.header.stamp.to_nsec() for message in self.odometry.messages]
@@ -83,13 +96,18 @@ class OdometryTopics(unittest.TestCase):
         stamps = sorted(by_stamp)
         steps = [later - earlier for earlier, later in zip(stamps, stamps[1:])]
         self.assertEqual(sorted(steps)[len(steps) // 2] // 1000000, 5)
+        compared = 0
         for message in self.odometry.messages[1:-1]:
             stamp = message.header.stamp.to_nsec()
             nearest = min(stamps, key=lambda other: abs(other - stamp))
+            if abs(nearest - stamp) > 5e6:
+                continue  # lost on the way to this subscriber
+            compared += 1
             position = message.pose.pose.position
             predicted = by_stamp[nearest].pose.pose.position
             self.assertAlmostEqual(position.x, predicted.x, delta=0.05)
             self.assertAlmostEqual(position.y, predicted.y, delta=0.05)
+        self.assertGreater(compared, 0.8 * len(self.odometry))
 
     def test_clouds_are_registered_in_odom(self):
         self.assertGreater(len(self.clouds), 0.75 * len(self.odometry))

@@ -126,21 +126,22 @@ class Player:
     def send(self, topic, message):
         self._publishers[topic].publish(message)
 
-    def play(self, messages, done=None, ahead=10):
+    def play(self, messages, done=None, ahead=10, patience_s=0.5):
         """Publishes `messages`; `done()` counts what the node has answered, and the player keeps
-        at most `ahead` clouds ahead of it, beside those that the node leaves unanswered."""
+        at most `ahead` clouds ahead of it, beside those that the node leaves unanswered: what has
+        no answer after `patience_s` gets none."""
         sent = 0
         answered_before = done() if done else 0
         for topic, message in messages:
             self.send(topic, message)
             sent += topic == POINTS
             if done and topic == POINTS and sent > ahead:
-                self._wait_for_progress(done, answered_before + sent - ahead)
+                self._wait_for_progress(done, answered_before + sent - ahead, patience_s)
                 ahead = max(ahead, sent - (done() - answered_before))
 
     @staticmethod
-    def _wait_for_progress(done, wanted):
-        for _ in range(25):
+    def _wait_for_progress(done, wanted, patience_s):
+        for _ in range(int(patience_s / 0.02)):
             if done() >= wanted:
                 return
             rospy.rostime.wallsleep(0.02)
