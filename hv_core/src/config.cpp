@@ -8,6 +8,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "hv_core/one_line.h"
+
 namespace hv {
 
 void ConfigProblems::Require(bool condition, const std::string& key, const std::string& what) {
@@ -18,7 +20,7 @@ namespace {
 
 std::string Join(const std::vector<std::string>& lines) {
   std::string text;
-  for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + line;
+  for (const std::string& line : lines) text += (text.empty() ? "" : "\n") + OneLine(line);
   return text;
 }
 
@@ -284,7 +286,7 @@ std::string SyntaxError(const std::string& source, const YAML::Exception& error)
   const std::string line = error.mark.is_null() ? ""
                                                 : ":" + std::to_string(error.mark.line + 1) + ":" +
                                                       std::to_string(error.mark.column + 1);
-  return source + line + ": not valid YAML: " + error.msg;
+  return OneLine(source + line + ": not valid YAML: " + error.msg);
 }
 
 }  // namespace

@@ -4,12 +4,13 @@
 #include <string>
 
 #include "hv_core/error.h"
+#include "hv_core/one_line.h"
 
 namespace hv {
 
-/// Throws InputError: what is wrong, and in which file or text.
+/// Throws InputError of one line: what is wrong, and in which file or text.
 [[noreturn]] inline void Fail(const std::string& source, const std::string& what) {
-  throw InputError(source + ": " + what);
+  throw InputError(OneLine(source + ": " + what));
 }
 
 /// The same with the reason that the system gives.

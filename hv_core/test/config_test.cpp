@@ -83,6 +83,11 @@ TEST(Config, UnknownKeyNamesTheNearest) {
             "test.yaml:3: map.voxel_siz_m: unknown key; nearest is 'voxel_size_m'");
 }
 
+TEST(Config, KeysAreQuotedOnOneLine) {
+  EXPECT_EQ(RefusalOf("map: {\"voxel_size\\nm\": 1}\n"),
+            "test.yaml:1: map.voxel_size?m: unknown key; nearest is 'voxel_size_m'");
+}
+
 TEST(Config, WrongTypesAreRefusedWithPosition) {
   EXPECT_EQ(RefusalOf("enabled: 1\n"), "test.yaml:1: enabled: must be true or false");
   EXPECT_EQ(RefusalOf("map: {layers: 2.5}\n"), "test.yaml:1: map.layers: must be a whole number");

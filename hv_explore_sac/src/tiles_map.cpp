@@ -1,6 +1,7 @@
 #include <sstream>
 
 #include "hv_core/error.h"
+#include "hv_core/one_line.h"
 #include "hv_explore_sac/exploration_map.h"
 
 namespace hv::explore {
@@ -76,7 +77,7 @@ class TilesReader {
   }
 
   [[noreturn]] void Fail(const std::string& what) const {
-    throw InputError(source_ + ", line " + std::to_string(number_) + ": " + what);
+    throw InputError(OneLine(source_ + ", line " + std::to_string(number_) + ": " + what));
   }
 
   std::istringstream text_;

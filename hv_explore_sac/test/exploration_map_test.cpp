@@ -44,6 +44,7 @@ TEST(TilesTest, NamesWhatIsWrongAndWhere) {
   EXPECT_EQ(MessageOf("map a 1 1\n...\n..\n"),
             "maps.txt, line 3: has 2 tiles where the rows before have 3");
   EXPECT_EQ(MessageOf("map a 1 1\n..x\n"), "maps.txt, line 2: unknown tile `x`");
+  EXPECT_EQ(MessageOf("map a 1 1\n..\t\n"), "maps.txt, line 2: unknown tile `?`");
   EXPECT_EQ(MessageOf("map a 1 1\n#..\n"), "maps.txt, line 3: map a starts where nothing is free");
   EXPECT_EQ(MessageOf("map a 99 1\n#..\n"), "maps.txt, line 3: map a starts where nothing is free");
   EXPECT_EQ(MessageOf("map a 1 1\n"), "maps.txt, line 2: map a has no rows");

@@ -103,9 +103,9 @@ class Collector {
  private:
   double CoveredShare() const {
     if (imu_stamps_.empty() || spans_.empty()) return 0.0;
-    const auto [first, last] = std::minmax_element(imu_stamps_.begin(), imu_stamps_.end());
+    const auto imu = std::minmax_element(imu_stamps_.begin(), imu_stamps_.end());
     const auto covered = std::count_if(spans_.begin(), spans_.end(), [&](const auto& span) {
-      return span.first >= *first && span.second <= *last;
+      return span.first >= *imu.first && span.second <= *imu.second;
     });
     return static_cast<double>(covered) / static_cast<double>(spans_.size());
   }

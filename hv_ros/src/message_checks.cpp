@@ -57,6 +57,7 @@ std::string ReadPoints(const PointCloud2& cloud, std::vector<Point>& points) {
   const auto intensity = OffsetOf(cloud, "intensity");
   if (!x || !y || !z) return "its cloud has no float32 fields x, y, z";
   if (cloud.is_bigendian != 0 || !SizesAgree(cloud)) return "sizes of its cloud contradict";
+  if (cloud.width == 0) return "";  // of any number of rows
   for (std::size_t row = 0; row < cloud.height; ++row) {
     for (std::size_t column = 0; column < cloud.width; ++column) {
       const std::uint8_t* bytes = &cloud.data[row * cloud.row_step + column * cloud.point_step];

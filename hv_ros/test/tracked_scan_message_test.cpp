@@ -53,6 +53,15 @@ TEST(TrackedScanMessage, WithoutPointsIsAPrediction) {
   EXPECT_TRUE(after.points.empty());
 }
 
+TEST(TrackedScanMessage, RowsWithoutColumnsAreNoPoints) {
+  hv_msgs::TrackedScan message = *ToMessage(ExampleHeader(), ExamplePoints());
+  message.cloud.width = 0;
+  message.cloud.height = 0xFFFFFFFF;
+  const DecodedTrackedScan after = FromMessage(message);
+  EXPECT_EQ(after.error, "");
+  EXPECT_TRUE(after.points.empty());
+}
+
 TEST(TrackedScanMessage, LeavesOutPointsThatAreNotFinite) {
   std::vector<Point> points = ExamplePoints();
   points[0].y = static_cast<float>(kNotANumber);

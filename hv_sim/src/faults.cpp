@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "hv_core/error.h"
+#include "hv_core/one_line.h"
 
 namespace hv::sim {
 namespace {
@@ -206,7 +207,8 @@ const std::vector<FaultKind>& FaultKinds() {
   return kKinds;
 }
 
-Fault ParseFault(const std::string& text) {
+Fault ParseFault(const std::string& given) {
+  const std::string text = OneLine(given);  // errors quote it
   const std::size_t colon = text.find(':');
   Fault fault;
   fault.name = text.substr(0, colon);

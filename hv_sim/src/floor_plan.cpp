@@ -10,6 +10,7 @@
 
 #include "hv_core/config.h"
 #include "hv_core/error.h"
+#include "hv_core/one_line.h"
 #include "hv_sim/mesh_builder.h"
 
 namespace hv::sim {
@@ -26,7 +27,7 @@ struct Image {
 };
 
 [[noreturn]] void Fail(const std::string& path, const std::string& fault) {
-  throw InputError(path + ": " + fault);
+  throw InputError(OneLine(path + ": " + fault));
 }
 
 /// Next number of a PGM header or P2 body, skipping comments; -1 when there is none.

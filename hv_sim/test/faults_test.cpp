@@ -214,6 +214,7 @@ TEST(ParseFaultTest, FillsInDefaults) {
 TEST(ParseFaultTest, NamesWhatIsWrongInOneLine) {
   EXPECT_NE(ErrorOf("imu_gaps").find("'imu_gaps' is unknown"), std::string::npos);
   EXPECT_NE(ErrorOf("imu_gap:begin=3").find("unknown parameter 'begin'"), std::string::npos);
+  EXPECT_NE(ErrorOf("imu\ngap").find("'imu?gap' is unknown"), std::string::npos);
   EXPECT_NE(ErrorOf("imu_gap:start=soon").find("'soon' of start"), std::string::npos);
   EXPECT_NE(ErrorOf("imu_gap:start").find("not a number"), std::string::npos);
   EXPECT_NE(ErrorOf("nan_points:rate=nan").find("not a number"), std::string::npos);

@@ -1,5 +1,6 @@
 #include "hv_explore_sac/nn/checkpoint.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string_view>
@@ -22,12 +23,13 @@ std::string ShapeText(Index rows, Index cols) {
 Matrix<float> GetMatrix(BinaryReader& reader) {
   const std::size_t rows = reader.Get<std::uint32_t>();
   const std::size_t cols = reader.Get<std::uint32_t>();
-  // Both factors are below 2^32, so the product cannot overflow; it may still be absurd.
+  // Both factors are below 2^32, so the product cannot overflow; either may still be absurd.
   constexpr std::size_t kMost = std::size_t{1} << 28U;
-  if (rows * cols > kMost) reader.Fail("holds a matrix that is too large");
+  if (std::max({rows, cols, rows * cols}) > kMost) reader.Fail("holds a matrix that is too large");
   const char* bytes = reader.Advance(rows * cols * sizeof(float));
   Matrix<float> matrix(static_cast<Index>(rows), static_cast<Index>(cols));
-  if (matrix.size() > 0) std::memcpy(matrix.data(), bytes, rows * cols * sizeof(float));
+  if (matrix.size() == 0) return matrix;
+  std::memcpy(matrix.data(), bytes, rows * cols * sizeof(float));
   if (!matrix.allFinite()) reader.Fail("holds a number that is not finite");
   return matrix;
 }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "hv_core/binary_io.h"
 #include "hv_core/file_io.h"
 #include "hv_explore_sac/nn/network.h"
 #include "small_map.h"
@@ -73,6 +74,19 @@ TEST(Checkpoint, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(error(Signed(Body(good) + "x")), "w.bin: goes on behind its end");
   EXPECT_NE(ErrorOf([] { Checkpoint::Read("/nowhere/w.bin"); }).find("/nowhere/w.bin"),
             std::string::npos);
+}
+
+/// Rows without columns take no bytes, however many there are.
+TEST(Checkpoint, RefusesAbsurdMatricesAtOnce) {
+  std::string bytes = Body(Checkpoint().Serialize());
+  bytes.resize(bytes.size() - sizeof(std::uint32_t));  // that many matrices: none
+  BinaryWriter writer;
+  writer.PutSize(1);
+  writer.PutText("endless");
+  writer.PutSize(0xffffffff);
+  writer.PutSize(0);
+  EXPECT_EQ(ErrorOf([&] { Checkpoint::Parse(Signed(bytes + writer.Take()), "w.bin"); }),
+            "w.bin: holds a matrix that is too large");
 }
 
 /// Any damage shows by the sum; and where the sum agrees, as in a file made to do harm, the reader

@@ -162,6 +162,29 @@ void AddPortal(MeshBuilder& mesh, const Axis& axis, double s) {
                  0.3});
 }
 
+/// Level ground before a portal, in a cutting between retaining walls. `ahead` is 1 where the
+/// tunnel ends and -1 where it begins.
+void AddForecourt(MeshBuilder& mesh, const Axis& axis, double s, double ahead) {
+  constexpr double kLength = 12.0;
+  constexpr double kHalf = 6.0;  // of its width
+  constexpr double kHeight = 5.0;
+  const Pose at = axis.FrameAt(s);
+  mesh.SetReflectivity(0.25);
+  mesh.AddPatch(12, 12, [&](double u, double v) -> Vector3d {
+    return at * Vector3d(ahead * kLength * u, kHalf * (2.0 * v - 1.0), 0.0);
+  });
+  mesh.SetReflectivity(0.5);
+  const auto wall = [&](double x0, double x1, double y0, double y1) {
+    mesh.AddBox(at, Vector3d(std::min(ahead * x0, ahead * x1), y0, 0.0),
+                Vector3d(std::max(ahead * x0, ahead * x1), y1, kHeight));
+  };
+  wall(0.0, 0.3, -kHalf, -kHalfWidth);
+  wall(0.0, 0.3, kHalfWidth, kHalf);
+  wall(0.0, kLength, -kHalf - 0.3, -kHalf);
+  wall(0.0, kLength, kHalf, kHalf + 0.3);
+  wall(kLength, kLength + 0.3, -kHalf, kHalf);
+}
+
 std::vector<Vector3d> RouteAlong(const Axis& axis, double from, double to) {
   std::vector<Vector3d> route;
   for (double s = from; s <= to; s += 2.0) {
@@ -194,6 +217,8 @@ World MakeTunnel(std::uint32_t seed) {
   AddClutter(site, axis, 3.0, axis.length() - 3.0);
   AddPortal(site.mesh, axis, 0.5);
   AddPortal(site.mesh, axis, axis.length() - 0.5);
+  AddForecourt(site.mesh, axis, 0.0, -1.0);
+  AddForecourt(site.mesh, axis, axis.length(), 1.0);
   site.mesh.Undulate(0.006, 0.9, seed);
   world.mesh = site.mesh.mesh();
   world.people = {Walker(axis, 20.0, 80.0, 0.0), Walker(axis, 120.0, 200.0, 40.0)};

@@ -1,0 +1,21 @@
+# The Debian package of the install space, made by scripts/package.sh.
+include_guard()
+file(READ ${CMAKE_CURRENT_SOURCE_DIR}/package.xml manifest)
+string(REGEX MATCH "<version>([^<]+)</version>" unused "${manifest}")
+set(CPACK_PACKAGE_VERSION ${CMAKE_MATCH_1})
+string(REGEX MATCH "<description>([^<]+)</description>" unused "${manifest}")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${CMAKE_MATCH_1})
+set(CPACK_PACKAGE_CONTACT "HV-LIOM maintainers <maintainers@hv-liom.org>")
+set(CPACK_PACKAGE_NAME hv-liom)
+set(CPACK_PACKAGING_INSTALL_PREFIX ${CMAKE_INSTALL_PREFIX})
+set(CPACK_GENERATOR DEB)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+# Libraries come from what the programs are linked with; these are what launch files start.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR}/devel/lib)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS
+  "libnodeletlib-tools, python3-roslaunch, python3-rosservice, python3-rostopic, ros-robot-state-publisher, rosbash")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "rviz")
+include(CPack)
