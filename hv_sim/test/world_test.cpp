@@ -116,6 +116,33 @@ TEST(World, ConstructionRouteClimbsToTheSecondFloorAndBack) {
   EXPECT_EQ(world.route.back().z(), 0.0);
 }
 
+/// Rays downwards along a line from 4 to 16 m beyond `end`, seen from `inside`.
+std::vector<Ray> RaysBeyond(const Vector3d& end, const Vector3d& inside, double sideways) {
+  const Vector3d ahead = (end - inside).normalized();
+  const Vector3d left(-ahead.y(), ahead.x(), 0.0);
+  std::vector<Ray> rays;
+  for (double along = 4.0; along < 16.0; along += 0.005) {
+    const Vector3d from = end + along * ahead + sideways * left + 0.3 * Vector3d::UnitZ();
+    rays.push_back({from.cast<float>(), -Vector3f::UnitZ()});
+  }
+  return rays;
+}
+
+TEST(World, TunnelHasAFloorWithoutCracksBeforeItsPortals) {
+  const World world = MakeWorld("tunnel", 2);
+  const RayCaster caster(world.mesh);
+  const std::vector<Vector3d>& route = world.route;
+  for (double sideways = -2.0; sideways <= 2.0; sideways += 0.1) {
+    for (const std::vector<Ray>& rays :
+         {RaysBeyond(route.front(), route[1], sideways),
+          RaysBeyond(route.back(), route[route.size() - 2], sideways)}) {
+      std::vector<Hit> hits;
+      caster.Cast(rays, 0.6F, hits);
+      for (const Hit& hit : hits) ASSERT_TRUE(std::isfinite(hit.range));
+    }
+  }
+}
+
 TEST(World, StraightTunnelIsTheSameAllAlongItsMiddle) {
   const World world = MakeWorld("tunnel_straight", 1);
   const RayCaster caster(world.mesh);

@@ -168,10 +168,12 @@ void AddForecourt(MeshBuilder& mesh, const Axis& axis, double s, double ahead) {
   constexpr double kLength = 12.0;
   constexpr double kHalf = 6.0;  // of its width
   constexpr double kHeight = 5.0;
+  constexpr double kOverlap = 0.3;  // with the road of the tunnel, so that no crack is left
   const Pose at = axis.FrameAt(s);
   mesh.SetReflectivity(0.25);
   mesh.AddPatch(12, 12, [&](double u, double v) -> Vector3d {
-    return at * Vector3d(ahead * kLength * u, kHalf * (2.0 * v - 1.0), 0.0);
+    return at *
+           Vector3d(ahead * (kLength * u - kOverlap * (1.0 - u)), kHalf * (2.0 * v - 1.0), 0.0);
   });
   mesh.SetReflectivity(0.5);
   const auto wall = [&](double x0, double x1, double y0, double y1) {
