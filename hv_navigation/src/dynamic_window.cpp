@@ -56,13 +56,14 @@ std::optional<Candidate> DynamicWindow::Drive() const {
 /// On the spot a robot stays where it is: where the margin leaves no room, the bare footprint may.
 std::optional<Candidate> DynamicWindow::Turn(double turn) const {
   const double other = turn - std::copysign(2.0 * M_PI, turn);
-  Footprint bare = footprint_;
+  const Footprint standing = AsFarAsNow();
+  Footprint bare = standing;
   bare.margin_m = std::min(bare.margin_m, 0.0);
   const double stop_s = config_.period_s + config_.reaction_s +
                         std::abs(now_.angular_rps) / limits_.angular_acceleration_rps2;
   if (!ahead_.OutOfReach(footprint_, pose_, stop_s)) return std::nullopt;
   if (!ahead_.LetStand(footprint_, pose_, 0.0)) return std::nullopt;
-  for (const Footprint& footprint : {footprint_, bare}) {
+  for (const Footprint& footprint : {standing, bare}) {
     for (const double way : {turn, other}) {
       if (!footprint.CollidesTurning(grid_, pose_, way)) return TurnCandidate(way);
     }
@@ -76,16 +77,15 @@ std::optional<Velocity> DynamicWindow::Straight(double speed_mps) const {
   return command;
 }
 
-/// The footprint that keeps off what lies in the way by as much as the robot does now.
-Footprint DynamicWindow::AtLeastAsFar(const Velocity& velocity) const {
+/// The footprint that keeps off everything by as much as the robot does now.
+Footprint DynamicWindow::AsFarAsNow() const {
   Footprint footprint = footprint_;
-  (velocity.linear_mps > 0.0 ? footprint.front_m : footprint.back_m) += kMarginStep_m;
+  if (tight_) footprint.margin_m += kMarginStep_m;
   return footprint;
 }
 
 /// Before everything that stands, and where those who walk let it.
 bool DynamicWindow::CanStop(Velocity velocity) const {
-  const Footprint as_far = AtLeastAsFar(velocity);
   const double step_s = 0.5 * config_.step_s;
   const double brake_s = config_.period_s + config_.reaction_s;
   PlanarPose pose = pose_;
@@ -97,7 +97,7 @@ bool DynamicWindow::CanStop(Velocity velocity) const {
     if (ahead_.MayTouch(footprint_, pose, time_s)) return false;
   }
   // Who may leave a place that is too near to something must not get nearer, cycle by cycle.
-  if (tight_ && as_far.Collides(grid_, pose)) return false;
+  if (tight_ && AsFarAsNow().Collides(grid_, pose)) return false;
   // Who stands does not start for a moment.
   constexpr double kStart_s = 0.5;
   const double before_s = Stands(now_) ? time_s + kStart_s : time_s;

@@ -37,7 +37,7 @@ class DynamicWindow {
 
  private:
   bool CanStop(Velocity velocity) const;
-  Footprint AtLeastAsFar(const Velocity& velocity) const;
+  Footprint AsFarAsNow() const;
   double TurnRate(int k) const;
   double PursuitRate(double speed_mps) const;
   double SpeedLimit() const;

@@ -333,6 +333,23 @@ TEST(LocalPlannerTest, GoesOnAlongAWallThatItStandsTooNearTo) {
   EXPECT_FALSE(follower.collided);
 }
 
+/// A turn swings its tail to the wall: it must drive away first, or turn the other way.
+TEST(LocalPlannerTest, TurnsAwayFromAWallWithoutTouchingIt) {
+  OccupancyGrid cells = Hall();
+  FillCells(cells, {0.0, 4.0}, {10.0, 4.2});
+  const ClearanceGrid grid = LocalClearances(cells);
+  const Footprint body;
+  for (const double yaw : {-0.1, -0.2, -0.3, -0.5}) {
+    const double reach_m = body.back_m * std::sin(-yaw) + body.half_width_m * std::cos(yaw);
+    const PlanarPose start{{2.0, 4.0 - reach_m - 0.01}, yaw};
+    Follower follower(start);
+    follower.planner.SetPath(StraightPath({start.position, -1.3}, 2.0));
+    follower.Until(LocalState::kReached, grid, 60.0);
+    EXPECT_EQ(follower.plan.state, LocalState::kReached) << yaw << ": " << follower.plan.reason;
+    EXPECT_FALSE(follower.collided) << yaw;
+  }
+}
+
 TEST(LocalPlannerTest, StandsWithoutAPathAndInObstacles) {
   const ClearanceGrid grid = LocalClearances(HallWithPerson(2.0));
   LocalPlanner planner({}, {}, Footprint());
