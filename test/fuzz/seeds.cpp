@@ -7,10 +7,10 @@
 #include "hv_core/point_cloud_file.h"
 #include "hv_core/pose_graph_file.h"
 #include "hv_core/trajectory.h"
-#include "hv_explore_sac/policy/policy_network.h"
 #include "hv_loop_btc/submap_file.h"
 #include "hv_relocalize_ndt/ndt_cache.h"
 #include "readers.h"
+#include "small_policy.h"
 
 namespace hv::fuzz {
 namespace {
@@ -78,18 +78,7 @@ std::string Grid() {
 }
 
 std::string Policy() {
-  explore::PolicySettings settings;
-  settings.network.width = 4;
-  settings.network.heads = 1;
-  settings.network.feed_forward = 4;
-  settings.network.encoder_layers = 1;
-  settings.network.pyramid_levels = 0;
-  settings.network.memory = 0;
-  const explore::nn::Network<float> network(settings.network, explore::PolicyNetwork::Shape());
-  const std::string bytes =
-      explore::PolicyNetwork(settings, Eigen::VectorXf::Zero(network.layout().size()))
-          .ToCheckpoint()
-          .Serialize();
+  const std::string bytes = explore::RandomNetwork()->ToCheckpoint().Serialize();
   return bytes.substr(0, bytes.size() - kSumBytes);
 }
 
