@@ -33,6 +33,8 @@ void PlacesConfig::Describe(ConfigVisitor& visitor) {
                 "show more; 0: from everywhere [deg]");
   visitor.Field("margin_m", margin_m,
                 "kept free around the largest circle in the footprint of the robot [m]");
+  visitor.Field("only_reachable", only_reachable,
+                "what lies where the robot cannot get to need not be seen");
 }
 
 void PlacesConfig::Validate(ConfigProblems& problems) const {

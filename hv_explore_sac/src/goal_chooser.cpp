@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "hv_explore_sac/unseen_ground.h"
+
 namespace hv::explore {
 namespace {
 
@@ -34,6 +36,7 @@ Outlook GoalChooser::Look(const OccupancyGrid& map, const Eigen::Vector2d& robot
   observation_ = Observation();
   const std::optional<Eigen::Vector2i> cell = CellOfRobot(robot);
   if (!cell) return Outlook::kNoFreePlace;
+  if (config_.places.only_reachable) CloseUnreachable(*cell);
   model_->Recall(StoodCells(), config_.goals.reached_m / frame_.cell_m);
   model_->Update(*cell);
   model_->Observe(observation_);
@@ -62,6 +65,13 @@ void GoalChooser::FollowMap(const OccupancyGrid& map) {
   refused_ = RefusedGoals(guard);
   planner_ = make_planner_(
       {config_.PlannerInCells(frame_.cell_m), config_.InCells(frame_.cell_m), nullptr, nullptr});
+}
+
+/// Around unseen ground the room that the robot needs there must be seen too, and whole blocks.
+void GoalChooser::CloseUnreachable(const Eigen::Vector2i& robot) {
+  const double room = rules_.room_m / frame_.cell_m;
+  const double blocks = 2.0 * model_->config().frontier.block;
+  CloseAllBut(model_->ground(), robot, room + blocks, model_->belief());
 }
 
 bool GoalChooser::CanTurnAt(const Eigen::Vector2d& position) const {

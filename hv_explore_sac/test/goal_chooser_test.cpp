@@ -1,5 +1,7 @@
 #include "hv_explore_sac/goal_chooser.h"
 
+#include <functional>
+
 #include <gtest/gtest.h>
 
 #include "toy_building.h"
@@ -105,8 +107,36 @@ TEST(GoalChooserTest, TellsWhyThereIsNoGoal) {
   for (int y = 20; y < 30; ++y) {
     for (int x = 5; x < 55; ++x) part.At(x, y) = OccupancyGrid::kOccupied;
   }
-  GoalChooser unreached = Chooser();
-  EXPECT_EQ(unreached.Look(part, {6.0, 1.2}), Outlook::kUnreached);
+  EXPECT_EQ(Chooser().Look(part, {6.0, 1.2}), Outlook::kNothing);
+  ExplorerConfig config;
+  config.places.only_reachable = false;
+  EXPECT_EQ(Chooser(config).Look(part, {6.0, 1.2}), Outlook::kUnreached);
+}
+
+/// The left room as far as it is seen through its door, the rest of which `close` takes away.
+OccupancyGrid SeenThroughDoor(const std::function<void(OccupancyGrid&)>& close) {
+  OccupancyGrid map = TwoRooms();
+  close(map);
+  for (int y = 50; y < 75; ++y) {
+    for (int x = 5; x < 50; ++x) map.At(x, y) = OccupancyGrid::kUnknown;
+  }
+  return map;
+}
+
+TEST(GoalChooserTest, RoomsThatItCannotEnterNeedNotBeSeen) {
+  const Eigen::Vector2d corridor(2.0, 1.2);
+  const OccupancyGrid wide = SeenThroughDoor([](OccupancyGrid&) {});
+  EXPECT_EQ(Chooser().Look(wide, corridor), Outlook::kGoals);
+  // Half of the door is 0.5 m wide, the robot 0.56 m.
+  const OccupancyGrid narrow = SeenThroughDoor([](OccupancyGrid& map) {
+    for (int y = 20; y < 25; ++y) {
+      for (int x = 20; x < 25; ++x) map.At(x, y) = OccupancyGrid::kOccupied;
+    }
+  });
+  EXPECT_EQ(Chooser().Look(narrow, corridor), Outlook::kNothing);
+  ExplorerConfig all;
+  all.places.only_reachable = false;
+  EXPECT_EQ(Chooser(all).Look(narrow, corridor), Outlook::kGoals);
 }
 
 TEST(GoalChooserTest, GoalsThatWereRefusedAreNotTheSameAsNone) {

@@ -21,6 +21,7 @@ struct PlacesConfig {
   int min_utility = 3;         ///< fewer observable frontier points count as none
   double new_side_deg = 60.0;  ///< around a frontier point, see FrontierViews
   double margin_m = 0.04;      ///< kept free around the largest circle in the footprint
+  bool only_reachable = true;  ///< what lies where the robot cannot get to need not be seen
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;
