@@ -35,6 +35,9 @@ void PlacesConfig::Describe(ConfigVisitor& visitor) {
                 "kept free around the largest circle in the footprint of the robot [m]");
   visitor.Field("only_reachable", only_reachable,
                 "what lies where the robot cannot get to need not be seen");
+  visitor.Field("min_unseen_m2", min_unseen_m2,
+                "of ground in one piece where the robot may stand; less need not be seen, with "
+                "only_reachable [m^2]");
 }
 
 void PlacesConfig::Validate(ConfigProblems& problems) const {
@@ -47,6 +50,7 @@ void PlacesConfig::Validate(ConfigProblems& problems) const {
   problems.Require(new_side_deg >= 0.0 && new_side_deg <= 180.0, "places.new_side_deg",
                    "must be 0 to 180");
   problems.Require(margin_m >= 0.0 && margin_m <= 1.0, "places.margin_m", "must be 0 to 1");
+  problems.Require(min_unseen_m2 >= 0.0, "places.min_unseen_m2", "must not be negative");
 }
 
 void ChoiceConfig::Describe(ConfigVisitor& visitor) {

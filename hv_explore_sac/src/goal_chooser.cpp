@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "hv_explore_sac/unseen_ground.h"
+#include "hv_explore_sac/gates.h"
 
 namespace hv::explore {
 namespace {
@@ -67,11 +67,16 @@ void GoalChooser::FollowMap(const OccupancyGrid& map) {
       {config_.PlannerInCells(frame_.cell_m), config_.InCells(frame_.cell_m), nullptr, nullptr});
 }
 
-/// Around unseen ground the room that the robot needs there must be seen too, and whole blocks.
+/// Frontier points lie beside gates no farther than the robot is wide, and blocks are whole ones.
 void GoalChooser::CloseUnreachable(const Eigen::Vector2i& robot) {
-  const double room = rules_.room_m / frame_.cell_m;
-  const double blocks = 2.0 * model_->config().frontier.block;
-  CloseAllBut(model_->ground(), robot, room + blocks, model_->belief());
+  constexpr double kAround_blocks = 2.0;
+  constexpr double kBeyond_blocks = 3.0;  // a block, and one beside it over the corner
+  const int block = model_->config().frontier.block;
+  GateRules rules;
+  rules.least_cells = config_.places.min_unseen_m2 / (frame_.cell_m * frame_.cell_m);
+  rules.around = rules_.room_m / frame_.cell_m + kAround_blocks * block;
+  rules.beyond = kBeyond_blocks * block;
+  CloseBesideGates(model_->ground(), robot, rules, model_->belief());
 }
 
 bool GoalChooser::CanTurnAt(const Eigen::Vector2d& position) const {
