@@ -28,6 +28,7 @@ struct Arguments {
   std::string config;
   std::string out;
   std::string labels;
+  std::string from;
   bool resume = false;
   int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 };
@@ -41,10 +42,16 @@ void Declare(CLI::App& app, Arguments& arguments) {
       ->required();
   CLI::Option* resume =
       app.add_flag("--resume", arguments.resume, "go on from the last round that --out holds");
-  app.add_option("--labels", arguments.labels,
-                 "folder of a training whose first measurements are taken over, for trying other "
-                 "networks or other learning on them")
-      ->excludes(resume);
+  CLI::Option* labels =
+      app.add_option("--labels", arguments.labels,
+                     "folder of a training whose first measurements are taken over, for trying "
+                     "other networks or other learning on them")
+          ->excludes(resume);
+  app.add_option("--from", arguments.from,
+                 "weights to begin with, as for other places or another sensor; else the planner "
+                 "utility and networks at random")
+      ->excludes(resume)
+      ->excludes(labels);
   app.add_option("--threads", arguments.threads, "of each process")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -99,6 +106,9 @@ int Run(const Arguments& arguments, hv::explore::Ranks& ranks) {
     if (ranks.rank() == 0) progress.Update(what, share);
   });
   if (!arguments.labels.empty()) trainer.TakeLabels(arguments.labels);
+  if (!arguments.from.empty()) {
+    trainer.BeginWith(hv::explore::PolicyNetwork::Read(arguments.from));
+  }
   if (arguments.resume) trainer.Resume();
   trainer.Run();
   if (ranks.rank() != 0) return 0;

@@ -20,9 +20,9 @@ PolicyLearner::PolicyLearner(const TrainConfig& config, int round, std::uint64_t
                              Report report)
     : config_(config), round_(round), seed_(seed), ranks_(ranks), report_(std::move(report)) {}
 
-std::shared_ptr<const PolicyNetwork> PolicyLearner::Learn(const std::vector<LabelledState>& labels,
-                                                          const std::vector<LabelledState>& gauge,
-                                                          std::vector<CurvePoint>& curve) const {
+std::shared_ptr<const PolicyNetwork> PolicyLearner::Learn(
+    const std::vector<LabelledState>& labels, const std::vector<LabelledState>& gauge,
+    const std::shared_ptr<const PolicyNetwork>& first, std::vector<CurvePoint>& curve) const {
   const ImprovementConfig& improvement = config_.improvement;
   const int levels = config_.sac.actor.pyramid_levels;
   const auto batch = static_cast<std::size_t>(std::max(1, improvement.batch / ranks_.size()));
@@ -43,17 +43,19 @@ std::shared_ptr<const PolicyNetwork> PolicyLearner::Learn(const std::vector<Labe
   for (int which = 0; which < improvement.networks; ++which) {
     // The others' progress is much the same.
     const Watch watch = which == 0 ? note : Watch([](int, double, const nn::Sac&) {});
-    networks.push_back(Train(which, improvement.Grown(improvement.updates, round_), fit, watch));
+    networks.push_back(
+        Train(which, improvement.Grown(improvement.updates, round_), first.get(), fit, watch));
   }
   if (networks.size() == 1) return networks.front();
   const Update imitate = [&](int count, std::uint64_t seed, nn::Sac& sac) {
     return ImitateMean(networks, labels, count, batch, seed, sac);
   };
-  return Train(improvement.networks, improvement.Grown(improvement.imitations, round_), imitate,
-               note);
+  return Train(improvement.networks, improvement.Grown(improvement.imitations, round_), first.get(),
+               imitate, note);
 }
 
 std::shared_ptr<const PolicyNetwork> PolicyLearner::Train(int which, int updates,
+                                                          const PolicyNetwork* first,
                                                           const Update& update,
                                                           const Watch& watch) const {
   const int networks = config_.improvement.networks == 1 ? 1 : config_.improvement.networks + 1;
@@ -62,6 +64,7 @@ std::shared_ptr<const PolicyNetwork> PolicyLearner::Train(int which, int updates
   learning.actor_optimiser.decay_steps = updates;
   nn::Sac sac(learning, PolicyNetwork::Shape(), PolicyInput::kGlobals);
   Reduce(ranks_, sac);
+  if (first != nullptr) sac.AdoptActor(first->parameters());
   int done = 0;
   for (int point = 1; point <= kPoints; ++point) {
     const int count = updates * point / kPoints - done;

@@ -17,6 +17,9 @@ namespace {
 /// Maps for validation on which labels are made as well.
 constexpr std::size_t kGaugeMaps = 30;
 
+/// A number in state.bin, of a training that did not begin with `utility`.
+constexpr const char* kBegunWithPolicy = "begun_with_policy";
+
 std::string RoundName(int round) { return std::to_string(round + 1); }
 
 /// What random numbers are for; each purpose in each round has its own.
@@ -70,11 +73,21 @@ void Trainer::Run() {
 void Trainer::Begin() {
   archive_.Clear();
   report_("utility on the maps for validation", 0.0);
-  utility_travel_ =
-      Validate(validation_, config_.exploration, sensor_, RolloutOf(nullptr), ranks_).travel;
-  best_travel_ = utility_travel_;
+  best_travel_ = utility_travel_ = TravelOf(nullptr);
+  if (last_ != nullptr) Consider(last_, TravelOf(last_));
   if (measured_) TakeOver(*measured_);
   Save();
+}
+
+void Trainer::BeginWith(std::shared_ptr<const PolicyNetwork> policy) {
+  const PolicySettings own{config_.policy, config_.sac.actor};
+  if (ToYaml(policy->settings()) != ToYaml(own)) {
+    throw InputError(
+        "the policy to begin with has other settings than `policy` and `sac.actor`:\n" +
+        ToYaml(policy->settings()));
+  }
+  begun_with_policy_ = true;
+  last_ = std::move(policy);
 }
 
 void Trainer::TakeLabels(const std::string& folder) {
@@ -83,7 +96,8 @@ void Trainer::TakeLabels(const std::string& folder) {
   TrainConfig config;
   ReadConfig(ParseYaml(other.text, path), path, config);
   if (WhatLabelsDependOn(config) != WhatLabelsDependOn(config_) ||
-      static_cast<int>(other.Number("ranks")) != ranks_.size()) {
+      static_cast<int>(other.Number("ranks")) != ranks_.size() || begun_with_policy_ ||
+      other.HasNumber(kBegunWithPolicy)) {
     throw InputError(path + ": measured with another configuration");
   }
   measured_ = {folder, other.Number("utility_travel"), MapsOfRound(config.labels).size()};
@@ -116,7 +130,7 @@ void Trainer::RunRound() {
   const PolicyLearner learner(config_, round_, Seed(kFit), ranks_, [this](double share) {
     report_("round " + RoundName(round_) + ": learning", share);
   });
-  last_ = learner.Learn(labels_, gauge_, curve_);
+  last_ = learner.Learn(labels_, gauge_, begun_with_policy_ ? last_ : nullptr, curve_);
   Judge(last_);
 }
 
@@ -203,10 +217,18 @@ void Trainer::FineTune() {
 
 void Trainer::Judge(std::shared_ptr<const PolicyNetwork> candidate) {
   report_("trying", 0.0);
-  const double travel =
-      Validate(validation_, config_.exploration, sensor_, RolloutOf(candidate), ranks_).travel;
+  const double travel = TravelOf(candidate);
   curve_.back().travel = travel;
   curve_.back().share = travel / utility_travel_;
+  Consider(std::move(candidate), travel);
+}
+
+double Trainer::TravelOf(std::shared_ptr<const PolicyNetwork> policy) const {
+  return Validate(validation_, config_.exploration, sensor_, RolloutOf(std::move(policy)), ranks_)
+      .travel;
+}
+
+void Trainer::Consider(std::shared_ptr<const PolicyNetwork> candidate, double travel) {
   if (travel >= best_travel_) return;
   best_travel_ = travel;
   best_ = std::move(candidate);
@@ -222,6 +244,7 @@ void Trainer::Save() const {
   state.PutNumber("round", round_);
   state.PutNumber("cycle", cycle_);
   state.PutNumber("ranks", ranks_.size());
+  if (begun_with_policy_) state.PutNumber(kBegunWithPolicy, 1.0);
   state.PutNumber("utility_travel", utility_travel_);
   state.PutNumber("best_travel", best_travel_);
   state.Write(PathOf("state.bin"));
@@ -245,7 +268,8 @@ void Trainer::Resume() {
   utility_travel_ = state.Number("utility_travel");
   best_travel_ = state.Number("best_travel");
   if (best_travel_ < utility_travel_) best_ = PolicyNetwork::Read(PathOf("policy.bin"));
-  if (round_ > 0) last_ = PolicyNetwork::Read(PathOf("last.bin"));
+  begun_with_policy_ = state.HasNumber(kBegunWithPolicy);
+  if (round_ > 0 || begun_with_policy_) last_ = PolicyNetwork::Read(PathOf("last.bin"));
   curve_ = ReadCurve(PathOf("curve.csv"));
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "hv_core/error.h"
+#include "hv_explore_sac/policy/policy_input.h"
 #include "random_maps.h"
 
 namespace hv::explore {
@@ -152,6 +153,46 @@ TEST_F(TrainerTest, TakesOverWhatAnotherHasMeasured) {
   more_alone.Run();
   EXPECT_GT(more.curve().back().states, alone.curve().back().states);
   ExpectSame(more.curve().back().loss, more_alone.curve().back().loss);
+}
+
+TEST_F(TrainerTest, ImprovesOnAPolicyThatItBeginsWith) {
+  const auto quiet = [](const std::string&, double) {};
+  config_.improvement.rounds = 1;
+  const PolicySettings settings{config_.policy, config_.sac.actor};
+  const nn::Sac random(config_.sac, PolicyNetwork::Shape(), PolicyInput::kGlobals);
+  const auto policy = std::make_shared<PolicyNetwork>(settings, random.actor_parameters());
+
+  // Who learns next to nothing is still what it began with.
+  config_.sac.actor_optimiser.learning_rate = 1e-9;
+  const std::string idle = Folder("idle");
+  Trainer unmoved = Make(idle, quiet);
+  unmoved.BeginWith(policy);
+  unmoved.Run();
+  EXPECT_TRUE(
+      PolicyNetwork::Read(idle + "/last.bin")->parameters().isApprox(policy->parameters(), 1e-5F));
+  config_.sac.actor_optimiser.learning_rate = 1e-3;
+
+  const std::string folder = Folder("begun");
+  Trainer broken = Make(folder, [&](const std::string& what, double) {
+    if (what == "round 1: learning") throw std::runtime_error("switched off");
+  });
+  broken.BeginWith(policy);
+  EXPECT_THROW(broken.Run(), std::runtime_error);
+  Trainer resumed = Make(folder, quiet);
+  resumed.Resume();
+  resumed.Run();
+  Trainer whole = Make(Folder("begun_whole"), quiet);
+  whole.BeginWith(policy);
+  whole.Run();
+  ExpectSame(resumed.curve().back().loss, whole.curve().back().loss);
+  ExpectSame(resumed.curve().back().travel, whole.curve().back().travel);
+  Trainer fresh = Make(Folder("not_begun"), quiet);
+  fresh.Run();
+  EXPECT_NE(fresh.curve().back().loss, whole.curve().back().loss);
+
+  EXPECT_THROW(Make(Folder("labels_of_begun"), quiet).TakeLabels(folder), InputError);
+  config_.policy.most_goals = 3;
+  EXPECT_THROW(Make(Folder("other_policy"), quiet).BeginWith(policy), InputError);
 }
 
 TEST_F(TrainerTest, TakesOverNothingMeasuredOtherwise) {

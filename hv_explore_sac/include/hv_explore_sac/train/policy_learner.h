@@ -25,9 +25,11 @@ class PolicyLearner {
   PolicyLearner(const TrainConfig& config, int round, std::uint64_t seed, Ranks& ranks,
                 Report report);
 
-  /// Adds to `curve`; the gain is that on the labels `gauge`, which are not learned from.
+  /// The networks begin as `first`, at random if that is null. Adds to `curve`; the gain is that on
+  /// the labels `gauge`, which are not learned from.
   std::shared_ptr<const PolicyNetwork> Learn(const std::vector<LabelledState>& labels,
                                              const std::vector<LabelledState>& gauge,
+                                             const std::shared_ptr<const PolicyNetwork>& first,
                                              std::vector<CurvePoint>& curve) const;
 
  private:
@@ -36,8 +38,8 @@ class PolicyLearner {
   /// Called every so many updates.
   using Watch = std::function<void(int count, double loss, const nn::Sac& sac)>;
 
-  std::shared_ptr<const PolicyNetwork> Train(int which, int updates, const Update& update,
-                                             const Watch& watch) const;
+  std::shared_ptr<const PolicyNetwork> Train(int which, int updates, const PolicyNetwork* first,
+                                             const Update& update, const Watch& watch) const;
 
   TrainConfig config_;
   int round_;

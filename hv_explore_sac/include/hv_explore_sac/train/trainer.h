@@ -38,6 +38,10 @@ class Trainer {
   /// time that SAC's policy was tried; also when more rounds or cycles are wanted now.
   /// Throws InputError when there is none.
   void Resume();
+  /// Run() improves on this policy instead of the planner `utility`, and each round's networks
+  /// begin as the policy of the round before: for other places or another sensor than it was made
+  /// for. Throws InputError when it is no policy of this configuration.
+  void BeginWith(std::shared_ptr<const PolicyNetwork> policy);
   /// Run() takes over what another training has measured in its first round, which depends on no
   /// network: for trying other ones, or other ways to learn. Throws InputError when what it depends
   /// on differs, Run() when the maps do.
@@ -61,6 +65,8 @@ class Trainer {
 
   void Begin();
   void TakeOver(const Measured& measured) const;
+  void Consider(std::shared_ptr<const PolicyNetwork> candidate, double travel);
+  double TravelOf(std::shared_ptr<const PolicyNetwork> policy) const;
   MapSupply MapsOfRound(const LabelConfig& labels) const;
   void RunRound();
   Rollout RolloutOf(std::shared_ptr<const PolicyNetwork> network) const;
@@ -87,8 +93,9 @@ class Trainer {
   int cycle_ = 0;                ///< of SAC
   double utility_travel_ = 0.0;  ///< on the maps for validation [cells]
   double best_travel_ = 0.0;
-  std::optional<Measured> measured_;           ///< taken over at the beginning
-  std::shared_ptr<const PolicyNetwork> last_;  ///< of the last round, null before the first
+  std::optional<Measured> measured_;  ///< taken over at the beginning
+  bool begun_with_policy_ = false;
+  std::shared_ptr<const PolicyNetwork> last_;  ///< that rounds improve on; null: `utility`
   std::shared_ptr<const PolicyNetwork> best_;
   std::vector<LabelledState> labels_;  ///< of the kept rounds
   std::vector<LabelledState> gauge_;   ///< of the present round on maps for validation
