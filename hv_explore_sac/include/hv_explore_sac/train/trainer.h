@@ -22,8 +22,8 @@ namespace hv::explore {
 /// discrete SAC goes on from that.
 ///
 /// The folder holds policy.bin (the best so far, as the planner `sac` takes it), curve.csv, and
-/// what Resume() goes on from: state.bin, last.bin (the last round's policy), labels_<rank>_*.bin,
-/// sac.bin, replay_<rank>.bin.
+/// what Resume() goes on from: state.bin, last.bin (the last round's policy), labels_RANK_*.bin,
+/// sac.bin, replay_RANK.bin.
 /// What comes out is then the same as without the break. Not thread-safe; uses TBB's threads.
 class Trainer {
  public:
