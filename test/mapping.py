@@ -15,9 +15,9 @@ CONNECTING_S = 1.5  # of a node whose predecessor nobody has missed yet
 LOOPS = "loop closing"  # name of the status in the diagnostics
 
 
-def start_node(program, name, *arguments):
+def start_node(program, name, *arguments, prefix=()):
     """A process that does not outlive the tests, whatever becomes of them."""
-    process = subprocess.Popen([program, "__name:=" + name] + list(arguments),
+    process = subprocess.Popen([*prefix, program, "__name:=" + name, *arguments],
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     atexit.register(process.kill)
     return process
@@ -37,8 +37,9 @@ def start_odometry():
     return start_node(HV_LIO_NODE, "hv_lio", "_config_file:=" + CONFIG)
 
 
-def start_mapping(*arguments):
-    return start_node(HV_LOOP_BTC_NODE, "hv_loop_btc", "_config_file:=" + CONFIG, *arguments)
+def start_mapping(*arguments, prefix=()):
+    return start_node(HV_LOOP_BTC_NODE, "hv_loop_btc", "_config_file:=" + CONFIG, *arguments,
+                      prefix=prefix)
 
 
 def kill(process):
@@ -79,13 +80,13 @@ def settle(odometry, keyframes, diagnostics):
 class Mapping:
     """A fresh pair of nodes that maps a recording which the test plays."""
 
-    def __init__(self, *arguments):
+    def __init__(self, *arguments, prefix=()):
         self.diagnostics = Diagnostics()
         self.odometry = odometry_collector()
         self.keyframes = Collector("/keyframe", Keyframe)
         self.player = Player(LOOP_RECORDING)
         self._lio = start_odometry()
-        self._loop = start_mapping(*arguments)
+        self._loop = start_mapping(*arguments, prefix=prefix)
         assert self.player.wait_for_node()
         assert wait_until(self.odometry.connected) and wait_until(self.keyframes.connected)
         assert wait_until(lambda: is_ready(self.diagnostics))
@@ -115,6 +116,11 @@ class Mapping:
         assert wait_until(lambda: is_ready(heard))
         rospy.rostime.wallsleep(CONNECTING_S)
 
+    @property
+    def pid(self):
+        """Of the loop closing node."""
+        return self._loop.pid
+
     def is_running(self):
         return self._loop.poll() is None
 
@@ -130,6 +136,15 @@ def files_of(folder):
     """Relative paths of all files."""
     return sorted(os.path.relpath(os.path.join(base, name), folder)
                   for base, _, names in os.walk(folder) for name in names)
+
+
+def contents_of(folder):
+    """Relative path -> bytes of all files."""
+    contents = {}
+    for name in files_of(folder):
+        with open(os.path.join(folder, name), "rb") as file:
+            contents[name] = file.read()
+    return contents
 
 
 def poses_of(map_folder):

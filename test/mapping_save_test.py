@@ -13,8 +13,9 @@ from hv_msgs.msg import SaveMapActionFeedback, SaveMapActionGoal, SaveMapActionR
 from std_srvs.srv import Trigger
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from mapping import LOOPS, Mapping, edges_of, files_of, poses_of  # noqa: E402
+from mapping import LOOPS, Mapping, contents_of, edges_of, files_of, poses_of  # noqa: E402
 from recording import CONFIG, HV_SLAM, LOOP_RECORDING, Collector, wait_until  # noqa: E402
+from small_disk import SmallDisk, is_permitted  # noqa: E402
 
 WHOLE_MAP = {"cloud.pcd", "descriptors.bin", "graph.g2o", "grid.pgm", "grid.yaml", "manifest.yaml",
              "occupancy.bt", "poses.tum"}
@@ -160,6 +161,43 @@ class MappingSave(unittest.TestCase):
                 continue
             distance = sum((a - b) ** 2 for a, b in zip(place, nearest[1])) ** 0.5
             self.assertLess(distance, 0.1, stamp)
+
+    def test_4_a_full_disk_costs_no_map(self):
+        if not is_permitted():
+            self.skipTest("not permitted to mount a small disk")
+        disk = SmallDisk(os.path.join(self.folder.name, "disk"), megabytes=64)
+        path = os.path.join(disk.path, "map")
+        mapping = Mapping("_map_path:=" + path, prefix=disk.prefix)
+        disk.enter(mapping.pid)
+        action = SaveMap()
+        mapping.play(mapping.player.clouds(0, 80))
+        self.assertEqual(action.save(path)[0], GoalStatus.SUCCEEDED)
+        saved = contents_of(disk.inside(path))
+        mapping.play(mapping.player.clouds(80, 120))
+
+        disk.fill(but_bytes=1 << 16)
+        self.expect_not_saved(action, disk, path, "No space left on device")
+        self.assertEqual(contents_of(disk.inside(path)), saved)
+        self.assertTrue(wait_until(
+            lambda: "map not saved" in mapping.diagnostics.message("map")))
+        disk.empty()
+        disk.remount("ro")
+        self.expect_not_saved(action, disk, path, "Read-only file system")
+        self.assertEqual(contents_of(disk.inside(path)), saved)
+
+        disk.remount("rw")
+        mapping.play(mapping.player.clouds(120, 160))
+        self.assertEqual(action.save(path)[0], GoalStatus.SUCCEEDED)
+        self.assertEqual(len(poses_of(disk.inside(path))), len(mapping.keyframes))
+        self.assertIn("map saved in " + path, mapping.stop())
+
+    def expect_not_saved(self, action, disk, path, reason):
+        status, result = action.save(path)
+        self.assertEqual(status, GoalStatus.ABORTED)
+        self.assertFalse(result.success)
+        self.assertIn(disk.path, result.message)
+        self.assertIn(reason, result.message)
+        self.assertNotIn("\n", result.message)
 
 
 if __name__ == "__main__":
