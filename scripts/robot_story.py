@@ -11,17 +11,13 @@ import json
 import math
 import subprocess
 import sys
-import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-import actionlib
 import numpy as np
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped
-from hv_msgs.msg import ExploreAction, ExploreGoal
-from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "test"))
 from recording import Collector  # noqa: E402
@@ -29,11 +25,10 @@ from whole_robot import IMU, Master, Robot, place_of  # noqa: E402
 
 from free_places import FreePlaces  # noqa: E402
 from node_load import NodeLoad  # noqa: E402
+from robot_driving import (  # noqa: E402
+    Failure, add_simulation_arguments, connect_exploration, drive_to, explore, switch_on, wait)
 
-STARTING_S = 90.0
-EXPLORING_S = 3600.0
 LOCALIZING_S = 120.0
-DRIVING_S = 900.0
 FOUND_M = 0.2
 ARRIVED_M = 0.3
 LATENCIES = {"scan_to_pose": ("resources", "scan to pose"),
@@ -64,20 +59,6 @@ class Story:
     found_error_m: float = -1.0
     goal_error_m: float = -1.0
     drive: Stage = field(default_factory=Stage)
-
-
-class Failure(Exception):
-    """The story ends here."""
-
-
-def wait(condition, limit_s: float, otherwise: str):
-    """The first true value of `condition`, in wall time."""
-    end = time.monotonic() + limit_s
-    while time.monotonic() < end:
-        if value := condition():
-            return value
-        time.sleep(0.05)
-    raise Failure(otherwise)
 
 
 def travelled(robot: Robot) -> float:
@@ -111,27 +92,15 @@ class Teller:
         self.story = Story()
 
     def _switch_on(self, log: str, *arguments: str, start=None) -> tuple[Robot, NodeLoad]:
-        given = self._arguments
-        robot = Robot(str(given.out / log), start, f"world:={given.world}",
-                      f"seed:={given.seed}", f"point_share:={given.point_share}",
-                      f"sim_rate:={given.rate}", f"people:={str(given.people).lower()}", *arguments)
-        wait(lambda: len(robot.truth) > 0, STARTING_S, "the simulation does not start")
-        return robot, NodeLoad()
+        return switch_on(self._arguments, log, *arguments, start=start), NodeLoad()
 
     def explore(self) -> None:
         robot, load = self._switch_on("exploration.log", "mode:=exploration",
                                       f"save_map:={self._map}")
         try:
-            client = actionlib.SimpleActionClient("/hv_explore_sac/explore", ExploreAction)
-            wait(lambda: client.wait_for_server(rospy.Duration(1.0)), STARTING_S,
-                 "exploration does not start")
+            client = connect_exploration()
             self._begin_in_building(robot)
-            results = []
-            client.send_goal(ExploreGoal(), done_cb=lambda *result: results.append(result))
-            wait(lambda: results or not robot.is_on(), EXPLORING_S, "exploration does not end")
-            if not results:
-                raise Failure("a node ended while exploring")
-            status, result = results[0]
+            status, result = explore(robot, client)
             self.story.end_of_exploration = result.reason
             self.story.explored_m2 = result.explored_m2
             if status != GoalStatus.SUCCEEDED:
@@ -185,18 +154,7 @@ class Teller:
         return math.dist(self._in_building(place_in_map), robot.here())
 
     def _drive_to(self, robot: Robot, goal: tuple[float, float]) -> None:
-        client = actionlib.SimpleActionClient("move_base", MoveBaseAction)
-        wait(lambda: client.wait_for_server(rospy.Duration(1.0)), STARTING_S,
-             "navigation does not start")
-        message = MoveBaseGoal()
-        message.target_pose.header.frame_id = "map"
-        message.target_pose.pose.position.x, message.target_pose.pose.position.y = goal
-        message.target_pose.pose.orientation.w = 1.0
-        results = []
-        client.send_goal(message, done_cb=lambda status, _: results.append(status))
-        wait(lambda: results or not robot.is_on(), DRIVING_S, "the goal is not reached in time")
-        if results != [GoalStatus.SUCCEEDED]:
-            raise Failure("driving: " + client.get_goal_status_text())
+        drive_to(robot, goal)
         self.story.goal_error_m = self._error(robot, goal)
         if self.story.goal_error_m > ARRIVED_M:
             raise Failure(f"the goal is missed by {self.story.goal_error_m:.2f} m")
@@ -204,13 +162,8 @@ class Teller:
 
 def parse_arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--world", required=True, help="as world:= of hv_liom.launch")
-    parser.add_argument("--seed", type=int, required=True)
-    parser.add_argument("--people", action="store_true", help="people walk around")
-    parser.add_argument("--point-share", type=float, default=0.25)
-    parser.add_argument("--rate", type=float, default=1.0, help="simulated seconds per second")
+    add_simulation_arguments(parser)
     parser.add_argument("--hv-map", type=Path, required=True, help="the program hv_map")
-    parser.add_argument("--out", type=Path, required=True)
     return parser.parse_args()
 
 

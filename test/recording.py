@@ -3,6 +3,7 @@
 The tests publish every message themselves, so that each can spoil the data in its own way and none
 depends on the speed of the machine: the player waits for the node to keep up.
 """
+import collections
 import copy
 import os
 import struct
@@ -42,10 +43,10 @@ def wait_until(condition):
 
 
 class Collector:
-    """Every message of a topic, in order of arrival."""
+    """Every message of a topic, in order of arrival; the last `keep` of them if that is given."""
 
-    def __init__(self, topic, kind):
-        self.messages = []
+    def __init__(self, topic, kind, keep=None):
+        self.messages = [] if keep is None else collections.deque(maxlen=keep)
         self._subscriber = rospy.Subscriber(topic, kind, self.messages.append, queue_size=10000)
 
     def __len__(self):

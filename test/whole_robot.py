@@ -53,9 +53,9 @@ class Master:
 class Robot:
     """Everything of the robot, running: hv_liom.launch in simulation with these arguments."""
 
-    def __init__(self, log, start, *arguments):
+    def __init__(self, log, start, *arguments, keep=None):
         """`start` is where the base is at first: x, y [m] and yaw [deg] in the building; None:
-        anywhere."""
+        anywhere. `keep`: of the true poses; None: all."""
         place = ["start:=%g, %g, 0, %g" % tuple(start)] if start else []
         self._file = open(log, "w")
         self._log = log
@@ -63,7 +63,7 @@ class Robot:
             ["roslaunch", "hv_bringup", "hv_liom.launch", "sim:=true"] + place + list(arguments),
             stdout=self._file, stderr=subprocess.STDOUT)
         atexit.register(self.switch_off)
-        self.truth = Collector("/truth/odometry", Odometry)
+        self.truth = Collector("/truth/odometry", Odometry, keep)
         self.collisions = Collector("/collision", String)
         self.diagnostics = Diagnostics()
 
