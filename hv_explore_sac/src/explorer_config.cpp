@@ -33,11 +33,10 @@ void PlacesConfig::Describe(ConfigVisitor& visitor) {
                 "show more; 0: from everywhere [deg]");
   visitor.Field("margin_m", margin_m,
                 "kept free around the largest circle in the footprint of the robot [m]");
-  visitor.Field("only_reachable", only_reachable,
-                "what lies where the robot cannot get to need not be seen");
+  visitor.Field("only_gates", only_gates,
+                "frontiers count only where the robot can drive on, on the grid");
   visitor.Field("min_unseen_m2", min_unseen_m2,
-                "of ground in one piece where the robot may stand; less need not be seen, with "
-                "only_reachable [m^2]");
+                "of ground in one piece that must be unseen behind a gate, with only_gates [m^2]");
 }
 
 void PlacesConfig::Validate(ConfigProblems& problems) const {

@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "hv_explore_sac/grid_line.h"
+
 namespace hv::explore {
 namespace {
 
@@ -19,6 +21,33 @@ int FloorTo(int value, int multiple) {
 /// The cell of `frame` over the first cell of the map.
 Eigen::Vector2i ShiftOf(const OccupancyGrid& map, const CellFrame& frame) {
   return ((map.origin - frame.origin) / frame.cell_m).array().round().cast<int>();
+}
+
+/// Places farther apart were not driven between: the robot was carried, or the map has moved.
+constexpr double kLongestStep_m = 2.0;
+
+void OpenAround(const Eigen::Vector2i& center, const Belief& belief, Belief& ground) {
+  for (int y = -1; y <= 1; ++y) {
+    for (int x = -1; x <= 1; ++x) {
+      const Eigen::Vector2i cell = center + Eigen::Vector2i(x, y);
+      if (!belief.Contains(cell) || belief.At(cell) != Cell::kFree) continue;
+      ground.Set(ground.IndexOf(cell), Cell::kFree);
+    }
+  }
+}
+
+void OpenDriven(const std::vector<Eigen::Vector2i>& driven, double cell_m, const Belief& belief,
+                Belief& ground) {
+  for (std::size_t i = 0; i < driven.size(); ++i) {
+    OpenAround(driven[i], belief, ground);
+    if (i == 0) continue;
+    const Eigen::Vector2i& before = driven[i - 1];
+    if ((driven[i] - before).cast<double>().norm() * cell_m > kLongestStep_m) continue;
+    WalkLine(before, driven[i], [&](int x, int y) {
+      OpenAround({x, y}, belief, ground);
+      return true;
+    });
+  }
 }
 
 }  // namespace
@@ -45,6 +74,7 @@ ExplorationModel ModelOf(const navigation::ClearanceGrid& clearance, const CellF
       ground.Set(index, near ? Cell::kOccupied : known);
     }
   }
+  OpenDriven(rules.driven, frame.cell_m, belief, ground);
   model.SetGround(std::move(ground));
   return model;
 }

@@ -17,6 +17,12 @@ GoalChooser Chooser(const ExplorerConfig& config = {}, const Bounds& bounds = {}
   return GoalChooser(config, kRobotSize, bounds, Utility);
 }
 
+ExplorerConfig OnlyGates() {
+  ExplorerConfig config;
+  config.places.only_gates = true;
+  return config;
+}
+
 bool VisitedAt(const GoalChooser& chooser, const Eigen::Vector2d& position) {
   const ViewpointGraph& graph = chooser.model()->graph();
   const int viewpoint = graph.At(chooser.frame().CellOf(position));
@@ -107,10 +113,8 @@ TEST(GoalChooserTest, TellsWhyThereIsNoGoal) {
   for (int y = 20; y < 30; ++y) {
     for (int x = 5; x < 55; ++x) part.At(x, y) = OccupancyGrid::kOccupied;
   }
-  EXPECT_EQ(Chooser().Look(part, {6.0, 1.2}), Outlook::kNothing);
-  ExplorerConfig config;
-  config.places.only_reachable = false;
-  EXPECT_EQ(Chooser(config).Look(part, {6.0, 1.2}), Outlook::kUnreached);
+  EXPECT_EQ(Chooser().Look(part, {6.0, 1.2}), Outlook::kUnreached);
+  EXPECT_EQ(Chooser(OnlyGates()).Look(part, {6.0, 1.2}), Outlook::kNothing);
 }
 
 /// The left room as far as it is seen through its door, the rest of which `close` takes away.
@@ -123,20 +127,35 @@ OccupancyGrid SeenThroughDoor(const std::function<void(OccupancyGrid&)>& close) 
   return map;
 }
 
-TEST(GoalChooserTest, RoomsThatItCannotEnterNeedNotBeSeen) {
+TEST(GoalChooserTest, WithOnlyGatesRoomsThatItCannotEnterNeedNotBeSeen) {
   const Eigen::Vector2d corridor(2.0, 1.2);
   const OccupancyGrid wide = SeenThroughDoor([](OccupancyGrid&) {});
-  EXPECT_EQ(Chooser().Look(wide, corridor), Outlook::kGoals);
+  EXPECT_EQ(Chooser(OnlyGates()).Look(wide, corridor), Outlook::kGoals);
   // Half of the door is 0.5 m wide, the robot 0.56 m.
   const OccupancyGrid narrow = SeenThroughDoor([](OccupancyGrid& map) {
     for (int y = 20; y < 25; ++y) {
       for (int x = 20; x < 25; ++x) map.At(x, y) = OccupancyGrid::kOccupied;
     }
   });
-  EXPECT_EQ(Chooser().Look(narrow, corridor), Outlook::kNothing);
-  ExplorerConfig all;
-  all.places.only_reachable = false;
-  EXPECT_EQ(Chooser(all).Look(narrow, corridor), Outlook::kGoals);
+  EXPECT_EQ(Chooser(OnlyGates()).Look(narrow, corridor), Outlook::kNothing);
+  EXPECT_EQ(Chooser().Look(narrow, corridor), Outlook::kGoals);
+}
+
+TEST(GoalChooserTest, ARoomThatItHasEnteredIsNoTrap) {
+  // It has come through half of the door; the end of the corridor is unknown.
+  OccupancyGrid map = TwoRooms();
+  for (int y = 20; y < 25; ++y) {
+    for (int x = 20; x < 25; ++x) map.At(x, y) = OccupancyGrid::kOccupied;
+  }
+  for (int y = 5; y < 20; ++y) {
+    for (int x = 80; x < 115; ++x) map.At(x, y) = OccupancyGrid::kUnknown;
+  }
+  const Eigen::Vector2d inside(2.75, 3.5);
+  EXPECT_EQ(Chooser(OnlyGates()).Look(map, inside), Outlook::kNothing);
+  GoalChooser chooser = Chooser(OnlyGates());
+  for (const double y : {1.2, 2.0, 2.8}) chooser.NoteStood({2.75, y});
+  ASSERT_EQ(chooser.Look(map, inside), Outlook::kGoals);
+  EXPECT_GT(chooser.Choose(true).pose.position.x(), 4.0);
 }
 
 TEST(GoalChooserTest, GoalsThatWereRefusedAreNotTheSameAsNone) {

@@ -31,6 +31,27 @@ TEST(KnownPlaceTest, KeepsTheRobotFromObstaclesAndTheOutside) {
   EXPECT_EQ(at(4.05, 1.25), Cell::kOccupied);
 }
 
+TEST(KnownPlaceTest, WhereTheRobotHasDrivenItCanDrive) {
+  OccupancyGrid map = Drawn({"##########", "#...#....#", "#........#", "#...#....#", "##########"});
+  PlaceRules rules{0.28, {}};
+  const Eigen::Vector2i door = kFrame.CellOf({2.25, 1.25});
+  EXPECT_EQ(Model(map, kFrame, rules).ground().At(door), Cell::kOccupied);
+  rules.driven = {kFrame.CellOf({1.25, 1.25}), kFrame.CellOf({1.75, 1.25}),
+                  kFrame.CellOf({3.25, 1.25})};
+  const Belief ground = Model(map, kFrame, rules).ground();
+  for (int x = rules.driven.front().x(); x <= rules.driven.back().x(); ++x) {
+    EXPECT_EQ(ground.At(Eigen::Vector2i(x, door.y())), Cell::kFree);
+  }
+  EXPECT_EQ(ground.At(kFrame.CellOf({2.25, 1.05})), Cell::kOccupied);
+  // Unless something is there now.
+  map.At(door.x(), door.y()) = OccupancyGrid::kOccupied;
+  EXPECT_EQ(Model(map, kFrame, rules).ground().At(door), Cell::kOccupied);
+  // What it was carried over it has not driven.
+  map.At(door.x(), door.y()) = OccupancyGrid::kFree;
+  rules.driven = {kFrame.CellOf({1.05, 1.25}), kFrame.CellOf({3.25, 1.25})};
+  EXPECT_EQ(Model(map, kFrame, rules).ground().At(door), Cell::kOccupied);
+}
+
 TEST(KnownPlaceTest, CellsKeepTheirNamesWhenTheMapGrows) {
   const OccupancyGrid small = Drawn({"......", "......", "......"}, {1.0, 2.0});
   OccupancyGrid large =

@@ -21,8 +21,8 @@ struct PlacesConfig {
   int min_utility = 3;         ///< fewer observable frontier points count as none
   double new_side_deg = 60.0;  ///< around a frontier point, see FrontierViews
   double margin_m = 0.04;      ///< kept free around the largest circle in the footprint
-  bool only_reachable = true;  ///< what lies where the robot cannot get to need not be seen
-  double min_unseen_m2 = 0.3;  ///< of ground in one piece; less need not be seen
+  bool only_gates = false;     ///< frontiers count only where the robot can drive on, see GateRules
+  double min_unseen_m2 = 0.3;  ///< of ground behind a gate
 
   void Describe(ConfigVisitor& visitor);
   void Validate(ConfigProblems& problems) const;

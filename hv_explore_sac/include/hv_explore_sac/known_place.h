@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -37,6 +38,9 @@ struct RobotSize {
 struct PlaceRules {
   double room_m = 0.0;  ///< nearer to obstacles than that is closed
   Bounds bounds;        ///< what lies outside is closed
+  /// Where the robot has been, one after the other: what is free between them is ground, however
+  /// near obstacles are.
+  std::vector<Eigen::Vector2i> driven = {};
 };
 
 /// The model of a map, with its beliefs filled in and nothing else: what is known, and the ground
