@@ -4,7 +4,6 @@
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-out=$(realpath -m "${1:-$root/build/api}")
 
 case ${1:-} in
   -h | --help)
@@ -18,6 +17,7 @@ for program in doxygen dot; do
     exit 1
   }
 done
+out=$(realpath -m "${1:-$root/build/api}")
 mkdir -p "$out"
 cd "$root"
 { cat docs/Doxyfile; echo "OUTPUT_DIRECTORY = $out"; } | doxygen -

@@ -12,7 +12,7 @@ from actionlib_msgs.msg import GoalStatus
 from hv_msgs.msg import ExploreAction, ExploreGoal, ExploreResult
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
-from whole_robot import Robot
+from whole_robot import Master, Robot
 
 STARTING_S = 90.0
 EXPLORING_S = 3600.0
@@ -40,6 +40,15 @@ def add_simulation_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--point-share", type=float, default=0.25)
     parser.add_argument("--rate", type=float, default=1.0, help="simulated seconds per second")
     parser.add_argument("--out", type=Path, required=True)
+
+
+def begin(name: str, given: argparse.Namespace) -> Master:
+    """This program as a node of a master of its own; makes the folder of the results."""
+    given.out = given.out.resolve()
+    given.out.mkdir(parents=True, exist_ok=True)
+    master = Master()
+    rospy.init_node(name, disable_signals=True)
+    return master
 
 
 def switch_on(given: argparse.Namespace, log: str, *arguments: str, start=None,

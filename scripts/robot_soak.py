@@ -11,7 +11,7 @@ import csv
 import json
 import sys
 import threading
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -22,13 +22,13 @@ from std_srvs.srv import Trigger
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "test"))
 from recording import Collector  # noqa: E402
-from whole_robot import Master, Robot, place_of  # noqa: E402
+from whole_robot import Robot, place_of  # noqa: E402
 
 from free_places import FreePlaces  # noqa: E402
 from node_load import memory_mb, nodes  # noqa: E402
 from robot_driving import (  # noqa: E402
-    STARTING_S, Failure, add_simulation_arguments, connect_exploration, drive_to, explore, switch_on,
-    wait)
+    STARTING_S, Failure, add_simulation_arguments, begin, connect_exploration, drive_to, explore,
+    switch_on, wait)
 
 SAMPLE_S = 5.0  # in wall time
 MOST_FAILURES = 5  # in a row
@@ -40,7 +40,7 @@ class Phase:
     name: str
     hours: float = 0.0  # simulated
     goals: int = 0
-    refused: list[str] | None = None
+    refused: list[str] = field(default_factory=list)
     failure: str = ""
 
 
@@ -131,7 +131,7 @@ class PhaseUnderWay:
 
     def __init__(self, phases: list[Phase], name: str, robot: Robot, writer) -> None:
         self._robot = robot
-        self._phase = Phase(name, refused=[])
+        self._phase = Phase(name)
         phases.append(self._phase)
         self._watch = Watch(name, robot, writer)
 
@@ -159,10 +159,7 @@ def parse_arguments() -> argparse.Namespace:
 
 def main() -> int:
     arguments = parse_arguments()
-    arguments.out = arguments.out.resolve()
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    master = Master()
-    rospy.init_node("robot_soak", disable_signals=True)
+    master = begin("robot_soak", arguments)
     with (arguments.out / "memory.csv").open("w", newline="", buffering=1) as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["phase", "time_s", "node", "mb"])

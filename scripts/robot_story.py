@@ -15,18 +15,18 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
-import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "test"))
 from recording import Collector  # noqa: E402
-from whole_robot import IMU, Master, Robot, place_of  # noqa: E402
+from whole_robot import IMU, Robot, place_of  # noqa: E402
 
 from free_places import FreePlaces  # noqa: E402
 from node_load import NodeLoad  # noqa: E402
 from robot_driving import (  # noqa: E402
-    Failure, add_simulation_arguments, connect_exploration, drive_to, explore, switch_on, wait)
+    Failure, add_simulation_arguments, begin, connect_exploration, drive_to, explore, switch_on,
+    wait)
 
 LOCALIZING_S = 120.0
 FOUND_M = 0.2
@@ -169,10 +169,7 @@ def parse_arguments() -> argparse.Namespace:
 
 def main() -> int:
     arguments = parse_arguments()
-    arguments.out = arguments.out.resolve()
-    arguments.out.mkdir(parents=True, exist_ok=True)
-    master = Master()
-    rospy.init_node("robot_story", disable_signals=True)
+    master = begin("robot_story", arguments)
     teller = Teller(arguments)
     try:
         teller.explore()

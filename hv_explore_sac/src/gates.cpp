@@ -1,6 +1,7 @@
 #include "hv_explore_sac/gates.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <vector>
 

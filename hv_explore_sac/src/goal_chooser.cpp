@@ -31,14 +31,15 @@ void GoalChooser::ForgetRefusals() { refused_ = RefusedGoals(config_.GuardInCell
 
 Outlook GoalChooser::Look(const OccupancyGrid& map, const Eigen::Vector2d& robot) {
   FollowMap(map);
-  rules_.driven = StoodCells();
-  rules_.driven.push_back(frame_.CellOf(robot));
+  PlaceRules rules = rules_;
+  rules.driven = StoodCells();
+  rules.driven.push_back(frame_.CellOf(robot));
   model_ = std::make_unique<ExplorationModel>(
-      ModelOf(*clearance_, frame_, rules_, config_.InCells(frame_.cell_m)));
+      ModelOf(*clearance_, frame_, rules, config_.InCells(frame_.cell_m)));
   observation_ = Observation();
   const std::optional<Eigen::Vector2i> cell = CellOfRobot(robot);
   if (!cell) return Outlook::kNoFreePlace;
-  if (config_.places.only_gates) CloseBesideGates(*cell);
+  if (config_.places.only_gates) KeepGates(*cell);
   model_->Recall(StoodCells(), config_.goals.reached_m / frame_.cell_m);
   model_->Update(*cell);
   model_->Observe(observation_);
@@ -70,7 +71,7 @@ void GoalChooser::FollowMap(const OccupancyGrid& map) {
 }
 
 /// Frontier points lie beside gates no farther than the robot is wide, and blocks are whole ones.
-void GoalChooser::CloseBesideGates(const Eigen::Vector2i& robot) {
+void GoalChooser::KeepGates(const Eigen::Vector2i& robot) {
   constexpr double kAround_blocks = 2.0;
   constexpr double kBeyond_blocks = 3.0;  // a block, and one beside it over the corner
   const int block = model_->config().frontier.block;
@@ -78,7 +79,7 @@ void GoalChooser::CloseBesideGates(const Eigen::Vector2i& robot) {
   rules.least_cells = config_.places.min_unseen_m2 / (frame_.cell_m * frame_.cell_m);
   rules.around = rules_.room_m / frame_.cell_m + kAround_blocks * block;
   rules.beyond = kBeyond_blocks * block;
-  explore::CloseBesideGates(model_->ground(), robot, rules, model_->belief());
+  CloseBesideGates(model_->ground(), robot, rules, model_->belief());
 }
 
 bool GoalChooser::CanTurnAt(const Eigen::Vector2d& position) const {

@@ -106,9 +106,7 @@ int Run(const Arguments& arguments, hv::explore::Ranks& ranks) {
     if (ranks.rank() == 0) progress.Update(what, share);
   });
   if (!arguments.labels.empty()) trainer.TakeLabels(arguments.labels);
-  if (!arguments.from.empty()) {
-    trainer.BeginWith(hv::explore::PolicyNetwork::Read(arguments.from));
-  }
+  if (!arguments.from.empty()) trainer.BeginWith(arguments.from);
   if (arguments.resume) trainer.Resume();
   trainer.Run();
   if (ranks.rank() != 0) return 0;

@@ -30,9 +30,10 @@ struct ExplorationMap {
 inline constexpr int kTileCells = 16;
 
 /// Reads all maps of a tiles text file (blocks of a head line "map NAME START_X START_Y ..." and
-/// rows of dots and S for what is free, # for what is not, 16 cells wide each), of a folder of PNG or PGM images (of
-/// the public dungeon benchmark: bright is free, the start is marked by grey 208), or the one of a
-/// map_server YAML file. Throws InputError naming the file, the place and what is wrong.
+/// rows of dots and S for what is free, # for what is not, 16 cells wide each), of a folder of PNG
+/// or PGM images (of the public dungeon benchmark: bright is free, the start is marked by grey
+/// 208), or the one of a map_server YAML file. Throws InputError naming the file, the place and
+/// what is wrong.
 std::vector<ExplorationMap> ReadExplorationMaps(const std::string& path);
 
 /// The same from the text of a tiles file; `source` names it in messages.

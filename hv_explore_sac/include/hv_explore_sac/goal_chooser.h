@@ -75,7 +75,7 @@ class GoalChooser {
 
  private:
   void FollowMap(const OccupancyGrid& map);
-  void CloseBesideGates(const Eigen::Vector2i& robot);
+  void KeepGates(const Eigen::Vector2i& robot);
   void AvoidNarrowPlaces();
   std::optional<Eigen::Vector2i> CellOfRobot(const Eigen::Vector2d& robot) const;
   std::vector<Eigen::Vector2i> StoodCells() const;

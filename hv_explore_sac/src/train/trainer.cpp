@@ -79,12 +79,11 @@ void Trainer::Begin() {
   Save();
 }
 
-void Trainer::BeginWith(std::shared_ptr<const PolicyNetwork> policy) {
+void Trainer::BeginWith(const std::string& path) {
+  std::shared_ptr<const PolicyNetwork> policy = PolicyNetwork::Read(path);
   const PolicySettings own{config_.policy, config_.sac.actor};
   if (ToYaml(policy->settings()) != ToYaml(own)) {
-    throw InputError(
-        "the policy to begin with has other settings than `policy` and `sac.actor`:\n" +
-        ToYaml(policy->settings()));
+    throw InputError(path + ": has other settings than `policy` and `sac.actor`");
   }
   begun_with_policy_ = true;
   last_ = std::move(policy);

@@ -160,7 +160,9 @@ TEST_F(TrainerTest, ImprovesOnAPolicyThatItBeginsWith) {
   config_.improvement.rounds = 1;
   const PolicySettings settings{config_.policy, config_.sac.actor};
   const nn::Sac random(config_.sac, PolicyNetwork::Shape(), PolicyInput::kGlobals);
-  const auto policy = std::make_shared<PolicyNetwork>(settings, random.actor_parameters());
+  const PolicyNetwork first(settings, random.actor_parameters());
+  const std::string policy = testing::TempDir() + "trainer_first.bin";
+  first.ToCheckpoint().Write(policy);
 
   // Who learns next to nothing is still what it began with.
   config_.sac.actor_optimiser.learning_rate = 1e-9;
@@ -169,7 +171,7 @@ TEST_F(TrainerTest, ImprovesOnAPolicyThatItBeginsWith) {
   unmoved.BeginWith(policy);
   unmoved.Run();
   EXPECT_TRUE(
-      PolicyNetwork::Read(idle + "/last.bin")->parameters().isApprox(policy->parameters(), 1e-5F));
+      PolicyNetwork::Read(idle + "/last.bin")->parameters().isApprox(first.parameters(), 1e-5F));
   config_.sac.actor_optimiser.learning_rate = 1e-3;
 
   const std::string folder = Folder("begun");

@@ -38,10 +38,10 @@ class Trainer {
   /// time that SAC's policy was tried; also when more rounds or cycles are wanted now.
   /// Throws InputError when there is none.
   void Resume();
-  /// Run() improves on this policy instead of the planner `utility`, and each round's networks
-  /// begin as the policy of the round before: for other places or another sensor than it was made
-  /// for. Throws InputError when it is no policy of this configuration.
-  void BeginWith(std::shared_ptr<const PolicyNetwork> policy);
+  /// Run() improves on the policy in a file instead of the planner `utility`, and each round's
+  /// networks begin as the policy of the round before: for other places or another sensor than it
+  /// was made for. Throws InputError when it is no policy of this configuration.
+  void BeginWith(const std::string& path);
   /// Run() takes over what another training has measured in its first round, which depends on no
   /// network: for trying other ones, or other ways to learn. Throws InputError when what it depends
   /// on differs, Run() when the maps do.
